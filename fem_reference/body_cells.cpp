@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "fem_reference/system/attached_mass.h"
 #include "fem_reference/system/sample.h"
 #include "problem/system/input_error.h"
 
@@ -53,6 +54,7 @@ BodyCells::BodyCells(const GridProblem& problem, const Body3& body, const dealii
   const int nodes = int(scalar->n_dofs_per_cell()), points = int(quadrature.size());
   std::vector<dealii::types::global_dof_index> dofs(3 * nodes), pressure_dofs(pressures.cols());
   dealii::DynamicSparsityPattern pattern(unknowns(), unknowns());
+  const auto attached = attached_mass(problem.masses, body, *scalar);
   for (const auto& cell : dof_handler.active_cell_iterators()) {
     values.reinit(dealii::Triangulation<3>::cell_iterator(cell));
     Cell& c = cells_.emplace_back();
@@ -63,6 +65,7 @@ BodyCells::BodyCells(const GridProblem& problem, const Body3& body, const dealii
         for (int i = 0; i < 3; ++i) c.shape.gradients(3 * q + i, a) = values.shape_grad(a, q)[i];
     }
     c.mass = problem.material.density * N.transpose() * c.shape.weights.asDiagonal() * N;
+    if (const auto more = attached.find(cell->active_cell_index()); more != attached.end()) c.mass += more->second;
     cell->get_dof_indices(dofs);
     c.u.resize(dofs.size());
     for (unsigned int i = 0; i < dofs.size(); ++i) {

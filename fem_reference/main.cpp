@@ -55,6 +55,7 @@ Solution solve_one(const Request& request, const Discretisation& grid, Method me
   problem.stress_points = request.stress_points;
   problem.tolerance = request.tolerance;
   problem.own_memory = request.cost;
+  problem.masses = request.masses;
   problem.modes = request.modes;
   problem.motion = request.motion;
   problem.steps = grid.steps;

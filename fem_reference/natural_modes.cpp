@@ -14,6 +14,7 @@
 #include "fem_reference/grid/processes.h"
 #include "fem_reference/solvers/multigrid.h"
 #include "fem_reference/solvers/petsc.h"
+#include "fem_reference/system/attached_mass.h"
 #include "fem_reference/system/boundary_conditions.h"
 #include "fem_reference/system/sample.h"
 #include "problem/system/input_error.h"
@@ -77,12 +78,11 @@ CellMatrix stiffness_of(const CellLaw& law, const CellShape& shape, double unit)
   return K;
 }
 
-/// Consistent mass of a cell; none of its `pressures`.
-CellMatrix mass_of(const Eigen::MatrixXd& N, const Eigen::VectorXd& masses, Eigen::Index pressures) {
-  const Eigen::MatrixXd m = N.transpose() * masses.asDiagonal() * N;
-  CellMatrix M = CellMatrix::Zero(3 * N.cols() + pressures, 3 * N.cols() + pressures);
-  for (Eigen::Index a = 0; a < N.cols(); ++a)
-    for (Eigen::Index b = 0; b < N.cols(); ++b)
+/// The mass m of one component for all three; none of the `pressures` of the cell.
+CellMatrix mass_of(const Eigen::MatrixXd& m, Eigen::Index pressures) {
+  CellMatrix M = CellMatrix::Zero(3 * m.cols() + pressures, 3 * m.cols() + pressures);
+  for (Eigen::Index a = 0; a < m.cols(); ++a)
+    for (Eigen::Index b = 0; b < m.cols(); ++b)
       for (int i = 0; i < 3; ++i) M(3 * a + i, 3 * b + i) = m(a, b);
   return M;
 }
@@ -122,6 +122,7 @@ Pencil assemble_pencil(const GridProblem& problem, const Body3& body, const deal
 
   dealii::FEValues<3> values(*body.mapping, *scalar, quadrature, dealii::update_gradients | dealii::update_JxW_values);
   const Eigen::MatrixXd N = values_at(*scalar, quadrature);
+  const auto attached = attached_mass(problem.masses, body, *scalar);
   const CellLaw law{std::nullopt, form, shear_modulus(problem.material), lame_lambda(problem.material)};
   for_each_cell(pencil, dof_handler, of_pressure, [&](const auto& cell, const std::vector<PetscInt>& rows) {
     values.reinit(cell);
@@ -131,7 +132,9 @@ Pencil assemble_pencil(const GridProblem& problem, const Body3& body, const deal
         for (int i = 0; i < 3; ++i) shape.gradients(3 * q + i, a) = values.shape_grad(a, q)[i];
     }
     const CellMatrix stiffness = stiffness_of(law, shape, pressure_unit);
-    const CellMatrix mass = mass_of(N, problem.material.density * shape.weights, shape.pressures.cols());
+    Eigen::MatrixXd m = problem.material.density * N.transpose() * shape.weights.asDiagonal() * N;
+    if (const auto more = attached.find(cell->active_cell_index()); more != attached.end()) m += more->second;
+    const CellMatrix mass = mass_of(m, shape.pressures.cols());
     pencil.K->add(rows, rows, stiffness.data());  // PETSc leaves out negative rows and columns
     pencil.M->add(rows, rows, mass.data());
   });

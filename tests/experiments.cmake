@@ -66,6 +66,10 @@ add_test(NAME experiment.calibration_motion COMMAND ${calibration}_motion 100 "c
 set_tests_properties(experiment.calibration experiment.calibration_files PROPERTIES LABELS experiment TIMEOUT 1800 COST 100)  # first
 set_tests_properties(experiment.calibration_motion PROPERTIES LABELS long TIMEOUT 3600)
 
+add_test(NAME experiment.ten_bodies COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/bodies/ten_bodies.py
+                                            ${CMAKE_BINARY_DIR}/experiments/ten_bodies $<TARGET_FILE:springproof>)
+set_tests_properties(experiment.ten_bodies PROPERTIES LABELS long TIMEOUT 3600)
+
 add_test(NAME experiment.figures COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/source/figures.sh ${CMAKE_SOURCE_DIR} ${CMAKE_BINARY_DIR}/experiments)
 set(drawn ${cases})
 list(FILTER drawn INCLUDE REGEX "^golec_2019/[a-z]+$")

@@ -146,7 +146,8 @@ void measure(const MovingNetwork& moving, const BoundaryConditions& last, Histor
   const double scale = std::sqrt(2 * masses.sum() * *std::max_element(kinetic.begin(), kinetic.end()));
   const bool flies = std::none_of(last.fixed.begin(), last.fixed.end(), [](bool f) { return f; });
   if (flies && !moving.network().cells.empty())
-    h.measured["inertia_excess"] = inertia_excess(moving.network(), masses, motion.mass_consistency);
+    h.measured["inertia_excess"] =
+        inertia_excess(moving.network(), moving.material.density * moving.network().volume, motion.mass_consistency);
   if (flies && !motion.plane && last.external.isZero(0) && !damped) measure_spin(moving, scale, h);
   if (!damped) measure_momentum(motion, last, scale, h);
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <map>
 
@@ -50,6 +51,19 @@ EmbeddedModel build_on_tetrahedra(const Lattice& lattice, const ModelParameters&
   return built;
 }
 
+/// @throws InputError if a springs file has other masses attached than the case.
+void attach_masses(const Experiment& e, const Mesh& mesh, EmbeddedModel& built) {
+  Network& network = built.model.network;
+  const double of_file = network.attached.sum();
+  attach(e.masses, mesh, built.embedding, network);
+  const double of_case = network.attached.sum();
+  if (of_file > 0 && std::abs(of_file - of_case) > 1e-6 * of_file)
+    throw InputError(
+        fmt::format("/nodes/attached_kg: the springs file has {:.6g} kg attached to the body, the case "
+                    "{:.6g} kg (needed: the same, by [[mass]])",
+                    of_file, of_case));
+}
+
 /// On the lattice as the model takes it.
 EmbeddedModel built_on(const PreparedCase& prepared, const Lattice& lattice, const ModelParameters& parameters,
                        const std::set<std::string>& held, const IsotropicMaterial& material, bool in_motion) {
@@ -80,6 +94,7 @@ EmbeddedModel build_on(const PreparedCase& prepared, const Lattice& lattice, con
     if (prescribes_displacement(load)) held.insert(*patch_of(load));
   EmbeddedModel built = built_on(prepared, lattice, parameters, held, material, in_motion);
   choose_axes(prepared.loads, built.embedding.held, built.model.network);
+  attach_masses(prepared.experiment, *lattice.mesh, built);
   if (in_motion && held.empty()) {  // in flight all nodes fall alike
     built.embedding.free_fall = true;
     if (!built.embedding.patches.empty()) built.embedding.volumes = built.model.network.volume;

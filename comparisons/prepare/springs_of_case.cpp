@@ -1,5 +1,7 @@
 #include "comparisons/prepare/springs_of_case.h"
 
+#include <fmt/format.h>
+
 #include "comparisons/prepare/input_checksum.h"
 #include "msm/embedding/supports.h"
 #include "msm/measure/moduli.h"
@@ -54,7 +56,9 @@ void add_network(const PreparedCase& prepared, const Mesh* carried, SpringsFile&
 void add_cut_network(const PreparedCase& prepared, const Mesh* carried, SpringsFile& file) {
   const Lattice& lattice = prepared.lattices.front();
   const CutBody& body = *lattice.cut;
-  file.model = build_cut(prepared.models.front(), body, {}, *lattice.mesh, *file.material).model;
+  EmbeddedModel built = build_cut(prepared.models.front(), body, {}, *lattice.mesh, *file.material);
+  attach(prepared.experiment.masses, *lattice.mesh, built.embedding, built.model.network);
+  file.model = std::move(built.model);
   erase_laws<Anchors>(file.model);
   Embedding loads = embed(body, {}, file.model.network, Mesh{});
   file.loads = std::move(loads.patches);
@@ -85,6 +89,12 @@ std::map<std::string, double> derived_of(const SpringsFile& file, const ModelPar
 SpringsFile springs_of(const PreparedCase& prepared, const Mesh* carried) {
   const ModelParameters& parameters = prepared.models.front();
   const ModelChoice& choice = prepared.experiment.models.front();
+  for (const AttachedMass& mass : prepared.experiment.masses)
+    if (!mass.weighs)
+      throw InputError(
+          fmt::format("mass '{}': is inertia alone, and the masses of a springs file have weight too "
+                      "(allowed: weighs = true)",
+                      mass.name));
   SpringsFile file;
   file.material = prepared.experiment.materials.front();
   file.density = file.material->density;

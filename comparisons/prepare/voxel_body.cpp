@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <span>
 
 #include "comparisons/judge/measures.h"
 #include "comparisons/prepare/refined_lattice.h"
@@ -14,10 +15,12 @@
 #include "meshes/locate/locate.h"
 #include "meshes/mesher/mesher.h"
 #include "meshes/mesher/mesher_exchange.h"
+#include "meshes/patches/refined_rims.h"
 #include "meshes/patches/rule_region.h"
 #include "meshes/patches/select_patches.h"
 #include "meshes/volume.h"
 #include "meshes/voxels/voxelise.h"
+#include "problem/case_file/measures.h"
 #include "problem/system/progress.h"
 #include "problem/system/streams.h"
 
@@ -29,6 +32,7 @@ namespace {
 constexpr int finest_tetrahedra = 20000, finest_at_large_strain = 7000;
 constexpr double least_spread = 1e-6;  // of an area or a volume between the meshes, above which it is reported
 constexpr double mesh_ratio = 1.5;     // edges of one mesh over those of the next finer one
+constexpr double finer_at_rims = 4;    // edges of the finest mesh over those where held patches end on a smooth surface
 
 MeshRequest body_request(const PreparedCase& prepared) {
   MeshRequest request;
@@ -69,6 +73,24 @@ double coarseness(const Mesh& mesh, const PreparedCase& prepared) {
   return std::cbrt(prepared.body.uncut.back() / static_cast<double>(mesh.tetrahedra.size()));
 }
 
+/// Edges at a rim are the shorter the finer the mesh: what they cost falls with the square of the mesh's edges, as
+/// all else does.
+/// @param uncut its tetrahedra before patches were cut
+std::vector<std::string> refine_rims(const PreparedCase& prepared, int uncut, Mesh& mesh) {
+  const Experiment& e = prepared.experiment;
+  if (e.reference.elements.empty() || e.model_kinematics() == Kinematics::finite) return {};
+  const double edge = std::cbrt(6 * std::sqrt(2.0) * volume(mesh, mesh.nodes) / uncut);
+  const double coarser = std::cbrt(static_cast<double>(prepared.body.uncut.back()) / uncut);
+  std::vector<std::string> held = supported_patches(e);
+  for (const PatchRule& rule : e.patches)  // by normals: ragged, on noise as long as the surface is large
+    if (rule.facing) std::erase(held, rule.name);
+  const std::size_t before = mesh.tetrahedra.size();
+  refine_rims(held, edge * coarser / finer_at_rims, mesh);
+  if (mesh.tetrahedra.size() == before) return {};
+  return {fmt::format("held patches end on a smooth surface: {} tetrahedra cut into {} there", before,
+                      mesh.tetrahedra.size())};
+}
+
 void mesh_the_body(MeshRequest request, PreparedCase& prepared, std::string& hint) {
   const Experiment& e = prepared.experiment;
   request.edge = e.reference.edge;
@@ -82,9 +104,11 @@ void mesh_the_body(MeshRequest request, PreparedCase& prepared, std::string& hin
   if (!hint.empty()) prepared.body.notes.push_back(hint);
   body.coarser.push_back(std::move(body.mesh));
   for (const Mesh& mesh : body.coarser) prepared.body.uncut.push_back(static_cast<int>(mesh.tetrahedra.size()));
-  for (Mesh& mesh : body.coarser) {
-    const std::vector<std::string> cuts = select_patches(e.patches, mesh, coarseness(mesh, prepared));
-    if (&mesh == &body.coarser.back()) prepared.body.notes.insert(prepared.body.notes.end(), cuts.begin(), cuts.end());
+  for (std::size_t m = 0; m < body.coarser.size(); ++m) {
+    Mesh& mesh = body.coarser[m];
+    std::vector<std::string> notes = select_patches(e.patches, mesh, coarseness(mesh, prepared));
+    for (std::string& note : refine_rims(prepared, prepared.body.uncut[m], mesh)) notes.push_back(std::move(note));
+    if (m + 1 == body.coarser.size()) prepared.body.notes.insert(prepared.body.notes.end(), notes.begin(), notes.end());
     prepared.body.tetrahedra.push_back(std::make_shared<Mesh>(std::move(mesh)));
   }
 }
@@ -244,7 +268,8 @@ void set_wrenches(PreparedCase& prepared) {
   const Mesh& body = *prepared.body.tetrahedra.back();
   const auto parts = [&](const std::string& name) { return parts_of(prepared.experiment, body, name); };
   const auto at_centroid = [](const Vec3& force, const Vec3& c) { return Wrench{force, Vec3::Zero(), c}; };
-  for (Load& load : prepared.loads) {
+  const std::size_t own = prepared.loads.size() - prepared.experiment.weights;  // masses weigh where their inertia is
+  for (Load& load : std::span(prepared.loads).first(own)) {
     if (auto* t = std::get_if<Traction>(&load)) {
       t->wrench = at_centroid(area(parts(t->on)) * t->traction, centroid(parts(t->on)));
     } else if (auto* q = std::get_if<Pressure>(&load)) {

@@ -11,7 +11,7 @@ constexpr double matrix_free = 1.5e-5, with_matrices = 3e-5;
 constexpr double fem_step = 6e-5;                              // of a motion, per unknown and step
 constexpr double with_pressures = 1.6, pressures_above = 0.4;  // factor above this Poisson's ratio
 constexpr double start_up = 0.03;                              // of a run of the program
-constexpr double large_strain = 25;  // number of linear systems in all load steps and Newton steps
+constexpr double large_strain = 5;  // of all load steps and Newton steps, whose systems are solved roughly
 
 }  // namespace
 

@@ -126,4 +126,14 @@ std::string describe(const Load& load, Kinematics kinematics, Units units) {
       load);
 }
 
+std::string describe(const AttachedMass& mass, Units units) {
+  std::string where = "spread over " + mass.on;
+  if (mass.at.size() == 1) where = "at " + text(mass.at[0], units, "m");
+  if (mass.at.size() == 2)
+    where = fmt::format("along the segment from {} to {}", text(mass.at[0], units, "m"), text(mass.at[1], units, "m"));
+  const Named kg = unit_in(units, "kg");
+  return fmt::format("{}: {:.6g} {} {}{}", mass.name, mass.mass / kg.in_si, kg.name, where,
+                     mass.weighs ? "" : ", without weight");
+}
+
 }  // namespace springproof

@@ -48,7 +48,9 @@ Json json_of(const CaseResult& result) {
   const Experiment& e = result.experiment;
   Json poisson_ratios = Json::array(), loads = Json::array();
   for (const auto& m : e.materials) poisson_ratios.push_back(m.poisson_ratio);
-  for (const auto& load : e.loads) loads.push_back(describe(load, e.model_kinematics(), e.units));
+  for (std::size_t i = 0; i + e.weights < e.loads.size(); ++i)
+    loads.push_back(describe(e.loads[i], e.model_kinematics(), e.units));
+  for (const AttachedMass& mass : e.masses) loads.push_back(describe(mass, e.units));
   return {
       {"name", e.name},
       {"folder", e.folder},

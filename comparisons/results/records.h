@@ -260,6 +260,9 @@ void give_in_units_of_case(CaseResult& result);
 /// A load as a sentence with units: "x_max: moved by (0.12, 0, 0) m".
 std::string describe(const Load& load, Kinematics kinematics = Kinematics::linear, Units units = Units::m);
 
+/// A mass likewise: "weight: 0.05 kg at (0.1, 0, 0.03) m".
+std::string describe(const AttachedMass& mass, Units units = Units::m);
+
 /// How a load is drawn.
 struct LoadMark {
   std::string kind;            ///< "held", "moved", "turned", "force", "pressure", "gravity", "point"; empty: not drawn

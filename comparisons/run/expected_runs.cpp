@@ -18,6 +18,7 @@ namespace {
 constexpr double springs = 2.5e-6, springs_at_random = 3.5e-5;
 constexpr double spring_step = 2e-8;  // of a motion, per unknown and step
 constexpr double breaking = 1e-4;     // of a sample that dries: hundreds of equilibria
+constexpr double fit = 2.2e-6;        // of a patch-exact network, per node squared
 constexpr int reference_grids = 3;
 
 // Bodies of voxels before they are meshed.
@@ -53,7 +54,10 @@ class Runs {
     if (choice.in_motion)
       return {RunKind::springs_in_motion, spring_step * steps_of(*e_.dynamics, material_, edge) * p.seeds * unknowns};
     const bool at_random = p.row.topology == Topology::random;
-    return {RunKind::springs, (at_random ? springs_at_random : springs) * p.seeds * unknowns * factor_};
+    double seconds = (at_random ? springs_at_random : springs) * p.seeds * unknowns * factor_;
+    if (passes_patch_test(p.row) && e_.body.is_voxels())  // once for all parts
+      seconds += fit * std::pow(unknowns / 3, 2) / static_cast<double>(e_.materials.size());
+    return {RunKind::springs, seconds};
   }
 
   std::vector<RunCost> all;
@@ -167,6 +171,11 @@ double unmeshed_seconds(const Experiment& e, const IsotropicMaterial& material) 
     const double edge = std::cbrt((voxels ? share_of_the_box : 1) * e.body.size.prod() / cubes_of(e.body, i));
     if (allowed(nodal))
       for (const ModelChoice& model : e.models) runs.all.push_back(runs.model(model, nodal, edge));
+  }
+  if (e.reference.in_time && !voxels) {
+    PreparedCase unmeshed;
+    unmeshed.experiment = e;
+    add_grids_in_time(unmeshed, material, runs);
   }
   return sum_of(runs.all);
 }

@@ -18,6 +18,7 @@
 #include "comparisons/results/records.h"
 #include "meshes/mesher/mesher.h"
 #include "meshes/patches/select_patches.h"
+#include "meshes/volume.h"
 #include "msm/models.h"
 #include "msm/statics/equilibrium.h"
 #include "problem/case_file/external.h"
@@ -222,6 +223,17 @@ void try_lattice(PreparedCase& prepared, const Lattice& lattice) {
   at_measured_points(prepared, lattice, u);
 }
 
+/// Notes masses that are many times as heavy as the body.
+void note_heavy_masses(PreparedCase& prepared) {
+  constexpr double many = 10;
+  const Mesh& mesh = *prepared.lattices.front().mesh;
+  const double body = prepared.experiment.materials.front().density * volume(mesh, mesh.nodes);
+  for (const AttachedMass& mass : prepared.experiment.masses)
+    if (mass.mass > many * body)
+      prepared.body.notes.push_back(fmt::format("mass '{}' is {:.3g} times as heavy as the body, which has {:.3g} kg",
+                                                mass.name, mass.mass / body, body));
+}
+
 /// Calls `prepare_it`; error messages name the case.
 template <class Prepare>
 PreparedCase naming(const Experiment& experiment, const Prepare& prepare_it) try {
@@ -280,6 +292,7 @@ PreparedCase prepare(const Experiment& experiment) {
     }
     for (std::size_t m = 0; m < prepared.models.size(); ++m)
       if (is_external(experiment.models[m])) check_external(prepared, m);
+    note_heavy_masses(prepared);
     prepared.limits = lattice_limits(prepared);
     return prepared;
   });

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # The table of docs/models.md that names, for each kind of model and Poisson's ratio, the row whose largest error is the smallest: of
-# displacements and reactions in the five experiments, from the tables of the page itself.   docs/scripts/best_of_kind.sh PROGRAM [PAGE]
+# displacements and reactions in the five experiments, from the tables of docs/measured/models.md.   docs/scripts/best_of_kind.sh PROGRAM [PAGE]
 # At nu = 1/4 the terms of momentum dispersion and of volume vanish (q = 0, kappa = 0): what has no other is springs alone there.
 set -euo pipefail
-program=$1 page=${2:-$(dirname "$0")/../models.md}
+program=$1 page=${2:-$(dirname "$0")/../measured/models.md}
 "$program" list | awk '
   function worst(cell,   x) {  # of "7.5", "0.42 (0.59)"; a dash: not known
     if (cell !~ /[0-9]/) return ""

@@ -36,7 +36,7 @@ results() {
 # draw NAME PICTURE TARGET: one picture of a run becomes a figure.
 draw() {
   "$springproof" pictures "$folder/$1" --only "$2"
-  cp "$folder/$1"/png/*"$2.png" "$repository/docs/$3.png"
+  cp "$folder/$1"/png/*"$2.png" "$repository/docs/pictures/$3.png"
 }
 
 if [ "${1:-}" = points ]; then
@@ -53,4 +53,4 @@ results cost cost
 draw golec_2019 error-against-poisson-ratio error-against-poisson-ratio
 draw rabbit shapes-displacement-smooth-nu0.4 rabbit
 draw cost error-against-time error-against-cost
-points "$folder/golec_2019/results.csv" >"$repository/docs/error-against-poisson-ratio.csv"
+points "$folder/golec_2019/results.csv" >"$repository/docs/pictures/error-against-poisson-ratio.csv"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The tables of docs/models.md: errors of every model of the table that fills a body, in five experiments of Golec et al. (2019), and the
+# The tables of docs/measured/models.md: errors of every model of the table that fills a body, in five experiments of Golec et al. (2019), and the
 # moduli that all models have.   docs/scripts/models.sh [FOLDER]   (default build/models; a few minutes on two cores)
 # Needs build/release/springproof; prints Markdown.
 set -euo pipefail

@@ -15,6 +15,7 @@ Request request_of(const Experiment& experiment, const IsotropicMaterial& materi
   request.law = experiment.kinematics;
   request.material = material;
   request.loads = experiment.loads;
+  request.masses = experiment.masses;
   request.tolerance = 1e-8;
   request.cost = experiment.cost;
   return request;

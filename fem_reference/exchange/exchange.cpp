@@ -20,6 +20,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PatchForce, on, force, wrench)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Gravity, acceleration, wrench)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PointForce, at, force)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FieldBodyForce, field)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(AttachedMass, name, on, at, mass, weighs)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PatchReaction, patch, force, torque)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunTimes, set_up, solve)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Course, ramp, pulse, frequency)
@@ -52,7 +53,8 @@ nlohmann::json to_json(const Request& r) {
           {"cost", r.cost},
           {"vtu_single", r.vtu_single},
           {"modes", r.modes},
-          {"motion", r.motion}};
+          {"motion", r.motion},
+          {"masses", r.masses}};
 }
 
 Request request_from_json(const nlohmann::json& j) {
@@ -72,6 +74,7 @@ Request request_from_json(const nlohmann::json& j) {
   j.at("vtu_single").get_to(r.vtu_single);
   j.at("modes").get_to(r.modes);
   j.at("motion").get_to(r.motion);
+  j.at("masses").get_to(r.masses);
   return r;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "meshes/field.h"
+#include "problem/attached_mass.h"
 #include "problem/course.h"
 #include "problem/loads.h"
 #include "problem/material.h"
@@ -61,6 +62,8 @@ struct Request {
   bool vtu_single = false;                               ///< Discretisation::vtu in single precision
   int modes = 0;  ///< compute so many natural modes instead of a displacement: supports at rest, no other loads
   std::optional<MotionRequest> motion = {};  ///< integrate in time instead of an equilibrium
+  std::vector<AttachedMass> masses =
+      {};  ///< that modes and motions have beside the body's own; their weight is in `loads`
 };
 
 /// The result on one grid.

@@ -23,6 +23,7 @@ struct GridProblem {
   std::string law = "linear";
   IsotropicMaterial material;
   std::vector<Load> loads;
+  std::vector<AttachedMass> masses;             ///< beside the body's own, in motions and modes
   std::function<Vec3(const Vec3&)> body_force;  ///< [N/m^3], besides gravity; empty: none
   NodalVectors points;                          ///< rest positions at which the displacement is requested, n x 3 [m]
   NodalVectors stress_points = NodalVectors(0, 3);  ///< and the stress

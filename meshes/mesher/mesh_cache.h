@@ -6,12 +6,15 @@
 #include <string>
 
 #include "meshes/mesher/mesher.h"
+#include "problem/files/kept_file.h"
 
 namespace springproof {
 
-/// A place for one mesh among those in $SPRINGPROOF_MESH_CACHE, else $XDG_CACHE_HOME/springproof/meshes or
-/// ~/.cache/springproof/meshes.  All of it is optional: what cannot be read is no mesh, what cannot be written is lost.
-/// Thread-safe, also among processes.
+/// Where meshes, and what is computed of them, are kept: $SPRINGPROOF_MESH_CACHE, else
+/// $XDG_CACHE_HOME/springproof/meshes or ~/.cache/springproof/meshes; empty: nowhere.
+std::filesystem::path kept_folder();
+
+/// A place for one mesh among those kept (problem/files/kept_file.h).
 class MeshCache {
  public:
   /// @param program the mesher.  The place changes with it, with the request, and with each file behind the body, by
@@ -22,13 +25,11 @@ class MeshCache {
   /// Nothing: it was never kept, or is damaged, which is said on stderr.
   std::optional<MeshedBody> find() const;
 
-  /// @param answer of the mesher, in CBOR.  The meshes not used for longest go when there are more than 1 GB of them;
-  /// files of others in the folder are neither counted nor removed.
+  /// @param answer of the mesher, in CBOR
   void keep(const std::string& answer) const;
 
  private:
-  std::string key_;  ///< begins the content of each file; empty: no place
-  std::filesystem::path file_;
+  KeptFile file_;
 };
 
 }  // namespace springproof

@@ -133,10 +133,10 @@ fs::path built_in_bodies() { return data_folder("geo", SPRINGPROOF_GEO_DIR); }
 void refuse_own_script(const Body& body, const fs::path& file) {
   if (!std::getenv("SPRINGPROOF_NO_SCRIPTS") || !body.is_script() || is_built_in(file)) return;
   const std::span other_endings = std::span(body_file_endings()).subspan(1);
-  throw InputError(body.where, fmt::format("body.geo: '{}' is a script, which may run any command, and --no-scripts is "
-                                           "set (allowed: {} files, and the built-in {})",
-                                           body.geo, fmt::join(other_endings, ", "),
-                                           list_of_bodies(built_in_bodies())));
+  throw InputError(body.where,
+                   fmt::format("body.geo: '{}' is a script, which may run any command, and --no-scripts is "
+                               "set (allowed: {} files, and the built-in {})",
+                               body.geo, fmt::join(other_endings, ", "), list_of_bodies(built_in_bodies())));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // Tetrahedra that are cut without their faces ceasing to match.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "meshes/mesh.h"
@@ -22,6 +23,9 @@ class CutMesh {
 
   /// Puts a facet into a patch: the next number is that of a new one.
   void add_to_patch(std::size_t facet, int patch) { patches_[facet].push_back(patch); }
+  bool is_in_patch(std::size_t facet, int patch) const {
+    return std::find(patches_[facet].begin(), patches_[facet].end(), patch) != patches_[facet].end();
+  }
 
   /// Cuts all cells and facets at the edge a-b in two, at a point of the edge.
   /// @return the new node

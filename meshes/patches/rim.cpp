@@ -60,4 +60,10 @@ bool ends_at_edges(const std::vector<RimEdge>& rim) {
   return std::all_of(rim.begin(), rim.end(), [](const RimEdge& e) { return e.turn >= least_turn; });
 }
 
+bool is_smooth(const std::vector<RimEdge>& rim) {
+  double balance = 0;
+  for (const RimEdge& e : rim) balance += (e.turn < least_turn ? 1 : -1) * (e.b - e.a).norm();
+  return balance > 0;
+}
+
 }  // namespace springproof

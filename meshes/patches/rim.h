@@ -20,4 +20,7 @@ std::vector<RimEdge> rim_of(const Mesh& mesh, const Patch& patch);
 /// same place on every mesh of the body.
 bool ends_at_edges(const std::vector<RimEdge>& rim);
 
+/// Whether the patch ends at no edge of the body for more than half of its rim.
+bool is_smooth(const std::vector<RimEdge>& rim);
+
 }  // namespace springproof

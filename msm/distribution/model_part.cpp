@@ -109,6 +109,7 @@ ModelPart part_of(const MassSpringModel& whole, const std::vector<char>& own_nod
   Network& network = part.model.network;
   network.X = all.X;
   network.volume = all.volume;
+  network.attached = all.attached;
   network.springs = of_numbers(all.springs, springs);
   network.cells = all.cells.of(part.cells);
   network.triangles = of_numbers(all.triangles, acting(all.triangles, own, themselves));

@@ -65,7 +65,7 @@ ImplicitMotion::ImplicitMotion(const MassSpringModel& model, double density, con
       density_(density),
       safe_step_(safe_time_step(model, density)),
       mass_(masses(model.network, density)),
-      spacing_(std::cbrt(mass_.mean() / density)),
+      spacing_(std::cbrt(model.network.volume.mean())),
       x_(model.network.X),
       v_(NodalVectors::Zero(x_.rows(), 3)) {
   if (options.integrator == Integrator::energy_momentum) secant_ = std::make_unique<EnergyMomentum>(model);

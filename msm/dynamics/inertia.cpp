@@ -37,7 +37,8 @@ NodalVectors inverse_inertia(const Network& network, double density, const Motio
 }
 
 MassAverage mass_average(const Network& network, double density, const MotionOptions& options) {
-  return {network, options.mass_consistency, network.volume + support_masses(network, options).col(0) / density};
+  return {network, options.mass_consistency,
+          (masses(network, density) + support_masses(network, options).col(0)) / density};
 }
 
 SupportInertia::SupportInertia(const Network& network, const MotionOptions& options)

@@ -27,6 +27,7 @@ class LatticeOnGpu : public LatticeMotion {
   }
 
   void set_conditions(const BoundaryConditions& conditions) override {
+    const Eigen::VectorXd mass = masses(network_, density_);
     CoefficientTable table(gpu::values_of_load);
     std::vector<int> load(box_.size, gpu::no_node);
     support_places_.clear();
@@ -35,7 +36,7 @@ class LatticeOnGpu : public LatticeMotion {
       double entry[gpu::values_of_load];
       for (int d = 0; d < 3; ++d) {
         const bool fixed = conditions.fixed[3 * n + axis_[d]];
-        entry[d] = fixed ? 0 : 1 / (density_ * network_.volume[n] * edge_);
+        entry[d] = fixed ? 0 : 1 / (mass[n] * edge_);
         entry[3 + d] = conditions.external(n, axis_[d]);
         if (!fixed) continue;
         support_places_.push_back(d * box_.size + place_[n]);

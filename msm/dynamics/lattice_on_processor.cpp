@@ -45,6 +45,7 @@ class LatticeOnProcessor : public LatticeMotion {
   }
 
   void set_conditions(const BoundaryConditions& conditions) override {
+    const Eigen::VectorXd mass = masses(network_, density_);
     const int lanes = layout_.lanes, block_size = node_coefficients * lanes;
     std::vector<double> all(std::size_t(layout_.rows()) * layout_.row_blocks * block_size, 0.0);
     supports_.clear();
@@ -55,7 +56,7 @@ class LatticeOnProcessor : public LatticeMotion {
       for (int d = 0; d < 3; ++d) {
         const int axis = layout_.axis[d];
         const bool fixed = conditions.fixed[3 * n + axis];
-        block[d * lanes] = fixed ? 0 : 1 / (density_ * network_.volume[n] * edge_);
+        block[d * lanes] = fixed ? 0 : 1 / (mass[n] * edge_);
         block[(3 + d) * lanes] = conditions.external(n, axis);
         if (fixed) supports_.push_back({d, slot, static_cast<Real>(conditions.prescribed(n, axis) / edge_)});
       }

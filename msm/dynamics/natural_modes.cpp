@@ -122,10 +122,8 @@ Eigen::SparseMatrix<double> mass_matrix(const Network& network, double density, 
                            [&](int j, double w) { entries.emplace_back(i, j, theta * v * w * C(a, b)); });
       });
   }
-  if (network.cells.empty()) {
-    const Eigen::VectorXd lumped = masses(network, density);
-    for (int n = 0; n < network.nodes(); ++n) entries.emplace_back(n, n, lumped[n]);
-  }
+  const Eigen::VectorXd lumped = network.cells.empty() ? masses(network, density) : network.attached;
+  for (int n = 0; n < lumped.size(); ++n) entries.emplace_back(n, n, lumped[n]);
   Eigen::SparseMatrix<double> mass(network.nodes(), network.nodes());
   mass.setFromTriplets(entries.begin(), entries.end());
   return mass;

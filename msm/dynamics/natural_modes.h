@@ -13,7 +13,7 @@ namespace springproof {
 /// trilinear displacement in each cell, over the part that the body fills: of its mass, its first moments and its
 /// second along the axes.  L: the sums of the rows of C; of whole cells an eighth of the cell's mass per corner.
 /// What belongs to carried nodes is handed to those that carry them.  Networks without cells have the lumped mass
-/// alone, masses().
+/// alone, masses().  What is attached is lumped.
 /// @param network of a model
 /// @param density [kg/m^3]
 /// @param theta share of consistent mass, 0 to 1

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <stdexcept>
 
@@ -102,7 +103,8 @@ struct AddBound {
   NodeBlocks& blocks;
 
   void operator()(const Anchors&) const {}          // their nodes have a support mass
-  void operator()(const AveragedSprings&) const {}  // by whole cells, or by averaged_frequency_squared()
+  void operator()(const AveragedSprings&) const {}  // by whole cells, or by frequency_squared_of_cells()
+  void operator()(const MeasuredCells&) const {}    // the same
   void operator()(const Springs&) const {
     if (whole_cells) return;
     std::vector<double> k;
@@ -136,14 +138,24 @@ double cell_frequency_squared(const CellMatrix& K, double full, double theta) {
   return std::min(symmetric_eigenvalues(K, full / 8 * M)[23], MassAverage::largest_gain(theta) * lumped);
 }
 
-/// Averaged springs by cells: no squared frequency is above the largest that a cell has alone, with any shares of its
+/// Stiffness of a cell by its number, and whether that of all full cells of one edge is the same.
+struct StiffnessOfCells {
+  std::function<CellMatrix(std::size_t)> of;
+  bool full_alike;
+};
+
+/// By cells: no squared frequency is above the largest that a cell has alone, with any shares of its
 /// nodes' masses that add up over the cells of a node (Irons and Treharne).  A cell's share is in proportion to its own
 /// stiffness at the node; in a second round times the frequency that it then has.  The nodes of a cell with carried
 /// corners are those that carry them.
 class CellFrequencies {
  public:
-  CellFrequencies(const AveragedSprings& law, const Network& network, const Eigen::VectorXd& mass)
-      : law_(law), network_(network), mass_(mass), nodes_(network.cells.size()), weight_(network.cells.size()) {
+  CellFrequencies(StiffnessOfCells cells, const Network& network, const Eigen::VectorXd& mass)
+      : cells_(std::move(cells)),
+        network_(network),
+        mass_(mass),
+        nodes_(network.cells.size()),
+        weight_(network.cells.size()) {
     const Carriers carriers = carriers_of(network.nodes(), network.cells.carried);
     for (std::size_t c = 0; c < weight_.size(); ++c) {
       find_nodes(c, carriers);
@@ -169,7 +181,7 @@ class CellFrequencies {
         share.push_back(mass_[nodes_[c][n]] * weight_[c][n] / total[nodes_[c][n]]);
         key.push_back(static_cast<float>(share.back()));
       }
-      const bool full = network_.cells.is_full(c) && !through_.contains(c);
+      const bool full = cells_.full_alike && network_.cells.is_full(c) && !through_.contains(c);
       const auto known = full ? of_full.find(key) : of_full.end();
       const double own = known != of_full.end() ? known->second : alone(c, share);
       if (full) of_full[key] = own;
@@ -205,7 +217,7 @@ class CellFrequencies {
 
   /// Between the nodes of the cell.
   Eigen::MatrixXd stiffness(std::size_t cell) const {
-    const CellMatrix K = law_.cell_matrix(network_.cells.shape(cell));
+    const CellMatrix K = cells_.of(cell);
     const auto at = through_.find(cell);
     if (at == through_.end()) return K;
     return at->second.transpose() * K * at->second;
@@ -219,7 +231,7 @@ class CellFrequencies {
     return values[values.size() - 1];
   }
 
-  const AveragedSprings& law_;
+  StiffnessOfCells cells_;
   const Network& network_;
   const Eigen::VectorXd& mass_;
   std::vector<std::vector<int>> nodes_;             ///< of each cell
@@ -227,8 +239,8 @@ class CellFrequencies {
   std::map<std::size_t, Eigen::MatrixXd> through_;  ///< corners from nodes, 24 x 3 nodes; cells with carried corners
 };
 
-double averaged_frequency_squared(const AveragedSprings& law, const Network& network, const Eigen::VectorXd& mass) {
-  CellFrequencies cells(law, network, mass);
+double frequency_squared_of_cells(const StiffnessOfCells& of, const Network& network, const Eigen::VectorXd& mass) {
+  CellFrequencies cells(of, network, mass);
   const double first = cells.round();
   return std::min(first, cells.round());
 }
@@ -252,8 +264,17 @@ double safe_time_step(const MassSpringModel& model, double density, bool lagged,
     const bool full = theta > 0 && !network.cells.cut();
     largest += full ? cell_frequency_squared(averaged->cell_matrix(network.cells.full()),
                                              density * network.cells.volume(), theta)
-                    : gain * averaged_frequency_squared(*averaged, network, mass);
+                    : gain * frequency_squared_of_cells(
+                                 {[&](std::size_t c) { return averaged->cell_matrix(network.cells.shape(c)); }, true},
+                                 network, mass);
     add_norms(network, mass, *averaged, blocks);
+    largest = std::min(largest, gain * largest_eigenvalue(blocks));
+  }
+  if (const auto* measured = law_of<MeasuredCells>(model)) {
+    largest +=
+        gain * frequency_squared_of_cells(
+                   {[&](std::size_t c) { return measured->cell_matrix(network.cells, c); }, false}, network, mass);
+    add_norms(network, mass, *measured, blocks);
     largest = std::min(largest, gain * largest_eigenvalue(blocks));
   }
   return 2 / std::sqrt(largest);

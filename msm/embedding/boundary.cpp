@@ -249,6 +249,21 @@ std::optional<Eigen::Matrix<double, 6, 1>> free_motion(const BoundaryConditions&
 
 }  // namespace
 
+void attach(const std::vector<AttachedMass>& masses, const Mesh& mesh, const Embedding& embedding, Network& network) {
+  network.attached = {};
+  if (masses.empty()) return;
+  network.attached = Eigen::VectorXd::Zero(network.nodes());
+  for (const AttachedMass& mass : masses) try {
+      const Eigen::VectorXd force =
+          network_forces(loads_of(mass, Vec3::UnitX()), mesh, embedding, network, 0, 1).col(0);
+      const Eigen::VectorXd share = force.cwiseMax(0);
+      network.attached += mass.mass / share.sum() * share;
+    } catch (const InputError& e) {
+      throw InputError(fmt::format("mass '{}': {}", mass.name, e.what()));
+    }
+  hand_back(network.cells.carried, network.attached, 1);
+}
+
 void require_supported(const BoundaryConditions& bc, const NodalVectors& X) {
   const auto motion = free_motion(bc, {X});
   if (!motion) return;

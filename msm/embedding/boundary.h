@@ -7,6 +7,7 @@
 
 #include "meshes/field.h"
 #include "msm/embedding/embedding.h"
+#include "problem/attached_mass.h"
 #include "problem/loads.h"
 #include "problem/system/input_error.h"
 
@@ -58,6 +59,15 @@ BoundaryConditions transfer(const std::vector<Load>& loads, const Mesh& mesh, do
 /// @throws InputError also if a support finds no node to hold.
 BoundaryConditions transfer(const std::vector<Load>& loads, const Mesh& mesh, const Embedding& embedding,
                             const Network& network, double density, Kinematics kinematics, double factor = 1.0);
+
+/// Sets Network::attached: each node has the share in a mass that it has in a force in its place, and none where that
+/// is negative, as it may be at the surface of a disordered network.
+/// @param masses beside the body's own
+/// @param mesh of the body
+/// @param embedding of the mesh in the network: EmbeddedModel::embedding
+/// @param network that gets the masses
+/// @throws InputError naming the mass, as transfer() of such a force
+void attach(const std::vector<AttachedMass>& masses, const Mesh& mesh, const Embedding& embedding, Network& network);
 
 /// Checks that supports leave no rigid motion.
 /// @param conditions with the fixed unknowns

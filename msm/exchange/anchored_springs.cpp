@@ -20,8 +20,11 @@ void add_anchors(const SpringsFile& file, const std::set<std::string>& held, Net
   }
   const auto nodes = corners + static_cast<Eigen::Index>(network.anchors.size());
   network.X.conservativeResize(nodes, 3);
-  network.volume.conservativeResize(nodes);
-  network.volume.tail(nodes - corners).setZero();
+  for (Eigen::VectorXd* of_nodes : {&network.volume, &network.attached}) {
+    if (of_nodes->size() == 0) continue;
+    of_nodes->conservativeResize(nodes);
+    of_nodes->tail(nodes - corners).setZero();
+  }
   for (const Anchor& a : network.anchors) network.X.row(a.node) = anchored_point(a, file.model.network.X).transpose();
 }
 

@@ -129,7 +129,9 @@ void read_supports_and_loads(const JsonPlace& document, SpringsFile& file) {
     for (const std::string& name : loads->keys()) file.loads[name] = read_load(loads->at(name), network.nodes());
   if (const auto weight = document.at("nodes").find("weight_kg")) {
     const std::vector<double> kg = weight->numbers(1, static_cast<std::size_t>(network.nodes()), "nodes");
-    file.volumes = Eigen::Map<const Eigen::VectorXd>(kg.data(), static_cast<Eigen::Index>(kg.size())) / file.density;
+    Eigen::VectorXd own = Eigen::Map<const Eigen::VectorXd>(kg.data(), static_cast<Eigen::Index>(kg.size()));
+    if (network.attached.size() > 0) own -= network.attached;
+    file.volumes = own / file.density;
   }
 }
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "msm/algebra/dense.h"
 #include "msm/exchange/json_place.h"
 #include "msm/exchange/lattice_of_cells.h"
 #include "msm/exchange/read_cut_cells.h"
@@ -135,15 +136,24 @@ void require_each_once(const std::vector<std::array<int, n>>& all, const char* w
 void read_nodes(const JsonPlace& document, SpringsFile& file) {
   file.density = document.at("density_kg_m3").number(smallest_of_file, largest_number_of_file);
   const JsonPlace nodes = document.at("nodes");
-  nodes.require_known({"position_m", "mass_kg", "weight_kg"});
+  nodes.require_known({"position_m", "mass_kg", "attached_kg", "weight_kg"});
   Network& network = file.model.network;
   network.X = vectors(nodes.at("position_m"));
   if (network.nodes() == 0) nodes.at("position_m").refuse("is empty", "at least one node");
   const bool some_carried = document.find("carried").has_value();  // read_carried() sees to their masses
   const std::vector<double> mass = nodes.at("mass_kg").numbers(1, static_cast<std::size_t>(network.nodes()), "nodes",
                                                                some_carried ? 0 : smallest_of_file);
-  network.volume =
-      Eigen::Map<const Eigen::VectorXd>(mass.data(), static_cast<Eigen::Index>(mass.size())) / file.density;
+  Eigen::VectorXd own = Eigen::Map<const Eigen::VectorXd>(mass.data(), static_cast<Eigen::Index>(mass.size()));
+  if (const auto place = nodes.find("attached_kg")) {
+    const std::vector<double> attached = place->numbers(1, mass.size(), "nodes", 0);
+    network.attached = Eigen::Map<const Eigen::VectorXd>(attached.data(), own.size());
+    own -= network.attached;
+    for (std::size_t n = 0; n < mass.size(); ++n)
+      if (!(own[static_cast<Eigen::Index>(n)] > 0) && mass[n] > 0)
+        place->refuse(fmt::format("node {} has {:g} kg attached, of {:g} kg in all", n, attached[n], mass[n]),
+                      "less than its mass_kg, which has them in it");
+  }
+  network.volume = own / file.density;
 }
 
 /// In the order of the file.
@@ -205,6 +215,18 @@ void for_each_law(std::variant<Laws...>*, const Act& act) {
   (act(Laws{}), ...);
 }
 
+/// Every form of a cell has its energy.
+void require_positive(const MeasuredCells& law, const Network& network, const JsonPlace& place) {
+  constexpr double round_off = 1e-9;
+  for (std::size_t c = 0; c < network.cells.size(); ++c) {
+    const Eigen::VectorXd values = symmetric_eigenvalues(law.form_of_cell(c));
+    if (values[0] < -round_off * values[values.size() - 1])
+      place.at("form_N_m")
+          .refuse(fmt::format("the form of cell {} has the eigenvalue {:.3g} N/m", c, values[0]),
+                  "forms without negative eigenvalues");
+  }
+}
+
 void require_its_parts(const ForceLaw& law, const Network& network, const JsonPlace& place) {
   if (traits(law).reach == Reach::cells && network.cells.empty())
     place.refuse("has no cells to act on", "beside cells");
@@ -219,6 +241,7 @@ void require_its_parts(const ForceLaw& law, const Network& network, const JsonPl
   }
   if (std::holds_alternative<AngularSprings>(law) && network.triangles.empty())
     place.refuse("has no triangles to act on", "beside triangles");
+  if (const auto* measured = std::get_if<MeasuredCells>(&law)) require_positive(*measured, network, place);
   const auto* dispersion = std::get_if<MomentumDispersion>(&law);
   if (dispersion && dispersion->form == Dispersion::finite_strain) try {
       const NodalGradients every_node(*dispersion, network);
@@ -258,6 +281,10 @@ void require_rest(const JsonPlace& document, const MassSpringModel& model) {
     for (std::size_t c = 0; c < network.cells.size(); ++c)
       for (const int n : network.cells.corners[c])
         scale[n] += averaged->shear_modulus * std::pow(network.cells.edge_of(c), 2);
+  if (const auto* measured = law_of<MeasuredCells>(model))
+    for (std::size_t c = 0; c < network.cells.size(); ++c)
+      for (const int n : network.cells.corners[c])
+        scale[n] += measured->form_of_cell(c).trace() * network.cells.edge_of(c);
   const NodalVectors f = forces(model, network.X);
   for (int n = 0; n < network.nodes(); ++n)
     if (const double force = f.row(n).norm(); !(force <= unbalanced * scale[n]))
@@ -266,7 +293,7 @@ void require_rest(const JsonPlace& document, const MassSpringModel& model) {
   for (int n = 0; n < network.nodes(); ++n)
     if (scale[n] == 0)
       document.at("springs").refuse(fmt::format("node {} has no spring", n),
-                                    "one at least, or a cell with averaged springs");
+                                    "one at least, or a cell with averaged springs or a measured form");
 }
 
 void read_patches(const JsonPlace& document, SpringsFile& file) {

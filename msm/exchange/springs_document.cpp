@@ -165,6 +165,8 @@ void add_network(const Network& network, double density, DocumentWriter& out) {
   const double least_mass =
       network.cells.carried.empty() ? smallest_of_file : 0;  // what is carried has its mass elsewhere
   out.numbers({"nodes", "mass_kg"}, {mass.begin(), mass.end()}, least_mass);
+  if (network.attached.size() > 0)
+    out.numbers({"nodes", "attached_kg"}, {network.attached.begin(), network.attached.end()});
   std::vector<std::array<int, 2>> ends;
   std::vector<double> stiffness, rest_length;
   for (const Spring& s : network.springs) {
@@ -295,7 +297,8 @@ SpringsDocument document_of(const SpringsFile& springs) {
   for (const auto& [name, anchors] : springs.anchors) add_anchors(name, anchors, network.X, out);
   for (const auto& [name, shares] : springs.loads) add_load(name, shares, out);
   if (springs.volumes.size() > 0) {
-    const Eigen::VectorXd weight = springs.density * springs.volumes;
+    Eigen::VectorXd weight = springs.density * springs.volumes;
+    if (network.attached.size() > 0) weight += network.attached;
     out.numbers({"nodes", "weight_kg"}, {weight.begin(), weight.end()});
   }
   add_surface(springs.surface, out);

@@ -11,6 +11,7 @@
 #include "msm/laws/angular_springs.h"
 #include "msm/laws/averaged_springs.h"
 #include "msm/laws/hourglass_correction.h"
+#include "msm/laws/measured_cells.h"
 #include "msm/laws/momentum_dispersion.h"
 #include "msm/laws/springs.h"
 #include "msm/laws/volume_correction.h"
@@ -19,7 +20,7 @@ namespace springproof {
 
 /// Any of the force laws.
 using ForceLaw = std::variant<Springs, VolumeCorrection, HourglassCorrection, MomentumDispersion, AngularSprings,
-                              AveragedSprings, Anchors>;
+                              AveragedSprings, MeasuredCells, Anchors>;
 
 /// Properties of a law.
 /// @param law any of the list

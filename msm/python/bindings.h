@@ -41,6 +41,7 @@ struct BodyModel {
   Embedding embedding;                    ///< in the body's mesh
   std::shared_ptr<const SolidBody> body;  ///< null: none
   Eigen::VectorXd mass;                   ///< of the nodes [kg]
+  std::vector<AttachedMass> masses = {};  ///< beside the body's own; their inertia is in the network
 
   const MassSpringModel& model() const { return springs.model; }
   const Network& network() const { return springs.model.network; }
@@ -106,7 +107,8 @@ auto long_call(const F& work) {
 /// The loads that Python has.
 using BoundLoad =
     std::variant<PrescribedDisplacement, PrescribedRotation, Traction, Pressure, PatchForce, Gravity, PointForce>;
-std::vector<Load> loads_of(const std::vector<BoundLoad>& given);
+/// With the weight of the model's attached masses.
+std::vector<Load> loads_of(const BodyModel& model, const std::vector<BoundLoad>& given);
 
 /// Loads and supports of a model: those on the body's patches, nodes held, forces on nodes.
 struct NodeConditions {

@@ -32,8 +32,9 @@ std::shared_ptr<BodyModel> finished(BodyModel model) {
 
 std::shared_ptr<BodyModel> build(const std::string& name, const std::shared_ptr<SolidBody>& body,
                                  const IsotropicMaterial& material, const std::vector<std::string>& held,
-                                 const py::kwargs& options) {
+                                 const std::vector<AttachedMass>& masses, const py::kwargs& options) {
   BodyModel made;
+  made.masses = masses;
   made.parameters = parameters_of(name, options);
   made.body = body;
   const bool cut = made.parameters.cut.value_or(false);
@@ -46,6 +47,7 @@ std::shared_ptr<BodyModel> build(const std::string& name, const std::shared_ptr<
     return cut ? build_cut(made.parameters, *body->cut, held, *body->mesh, material)
                : build_embedded(made.parameters, *body->mesh, material, body->region.get());
   });
+  attach(masses, *body->mesh, built.embedding, built.model.network);
   made.embedding = std::move(built.embedding);
   SpringsFile& springs = made.springs;
   springs.model = std::move(built.model);
@@ -155,9 +157,11 @@ void bind_models(py::module_& m) {
   py::class_<BodyModel, std::shared_ptr<BodyModel>> model(m, "Model", R"(A mass-spring model of a body.
 
 name: a row of models(); options: those of a case file, as face_to_cube=1, seed=2, curve="neo_hooke"; cut=True: cells
-cut along the true surface, with `held`, the patches that supports will hold.  Raises InputError for what does not suit
+cut along the true surface, with `held`, the patches that supports will hold; masses: Mass(...) on the body.  Raises InputError for what does not suit
 the model.)");
-  model.def(py::init(&build), "name"_a, "body"_a, "material"_a, py::kw_only(), "held"_a = std::vector<std::string>())
+  model
+      .def(py::init(&build), "name"_a, "body"_a, "material"_a, py::kw_only(), "held"_a = std::vector<std::string>(),
+           "masses"_a = std::vector<AttachedMass>())
       .def_property_readonly(
           "name", [](const BodyModel& b) { return b.parameters.row.name; }, "row of models(), or file")
       .def_property_readonly(

@@ -165,7 +165,8 @@ std::shared_ptr<MovingModel> motion_of(const ModelPointer& model, const std::vec
   options.threads = threads;
   NodeConditions nodes = node_conditions(*model, held, displacement, forces);
   return long_call([&] {
-    return std::make_shared<MovingModel>(model, loads_of(loads), std::pair(std::move(nodes), load_factor), options);
+    return std::make_shared<MovingModel>(model, loads_of(*model, loads), std::pair(std::move(nodes), load_factor),
+                                         options);
   });
 }
 

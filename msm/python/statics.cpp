@@ -34,7 +34,7 @@ std::shared_ptr<SolvedState> solve(const ModelPointer& model, const std::vector<
                                    const py::object& held, const py::object& displacement, const py::object& forces,
                                    bool large) {
   if (large) require_large(*model);
-  const std::vector<Load> loads = loads_of(given);
+  const std::vector<Load> loads = loads_of(*model, given);
   const NodeConditions nodes = node_conditions(*model, held, displacement, forces);
   const Kinematics kinematics = large ? Kinematics::finite : Kinematics::linear;
   const LoadPath path = [&](double factor) { return conditions_of(*model, loads, nodes, kinematics, factor); };
@@ -114,9 +114,11 @@ void bind_state(py::module_& m) {
 
 }  // namespace
 
-std::vector<Load> loads_of(const std::vector<BoundLoad>& given) {
+std::vector<Load> loads_of(const BodyModel& model, const std::vector<BoundLoad>& given) {
   std::vector<Load> loads;
   for (const BoundLoad& load : given) std::visit([&](const auto& l) { loads.emplace_back(l); }, load);
+  for (const AttachedMass& mass : model.masses)
+    for (Load& weight : weight_of(mass, loads)) loads.push_back(std::move(weight));
   return loads;
 }
 
@@ -183,6 +185,21 @@ BoundaryConditions conditions_of(const BodyModel& model, const std::vector<Load>
   return bc;
 }
 
+AttachedMass mass_of(double kg, const py::object& at, const std::string& on, bool weighs) {
+  if (!(kg > 0 && std::isfinite(kg))) throw InputError(fmt::format("mass: is {} (allowed: a number > 0 [kg])", kg));
+  if (at.is_none() == on.empty()) throw InputError("Mass: needs a place (allowed: one of at and on)");
+  AttachedMass mass{"mass", on, {}, kg, weighs};
+  if (at.is_none()) return mass;
+  const auto given = at.cast<Numbers>();
+  if (given.ndim() == 1) {
+    mass.at = {finite(vector_of(given, "at"), "at")};
+  } else {
+    const NodalVectors ends = finite(rows_of(given, "at", 2), "at");
+    mass.at = {ends.row(0).transpose(), ends.row(1).transpose()};
+  }
+  return mass;
+}
+
 void bind_loads(py::module_& m) {
   py::class_<PrescribedDisplacement>(m, "Displacement", "A support: displacement (x, y, z) [m] of a patch; None: free.")
       .def(py::init([](const std::string& on, const std::array<std::optional<double>, 3>& displacement) {
@@ -230,6 +247,12 @@ void bind_loads(py::module_& m) {
              return PointForce{finite(vector_of(at, "at"), "at"), finite(vector_of(force, "force"), "force")};
            }),
            "at"_a, "force"_a);
+  py::class_<AttachedMass>(m, "Mass", R"(A mass that is no part of the body, for Model(masses=[...]).
+
+at: a point of the body, or the two ends of a segment that it is spread along, 2 x 3 [m]; or on: a patch.  weighs=False:
+Gravity does not act on it.)")
+      .def(py::init(&mass_of), "mass"_a, "at"_a = py::none(), py::kw_only(), "on"_a = "", "weighs"_a = true)
+      .def_readonly("mass", &AttachedMass::mass, "[kg]");
 }
 
 void bind_statics(py::module_& m, py::class_<BodyModel, std::shared_ptr<BodyModel>>& model) {

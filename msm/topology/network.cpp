@@ -42,7 +42,11 @@ std::vector<Spring> merge_springs(std::vector<Spring> springs) {
   return springs;
 }
 
-Eigen::VectorXd masses(const Network& network, double density) { return density * network.volume; }
+Eigen::VectorXd masses(const Network& network, double density) {
+  Eigen::VectorXd mass = density * network.volume;
+  if (network.attached.size() > 0) mass += network.attached;
+  return mass;
+}
 
 Eigen::VectorXd inverse_masses(const Network& network, double density) {
   Eigen::VectorXd inverse = masses(network, density).cwiseInverse();

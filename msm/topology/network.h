@@ -32,6 +32,7 @@ struct Network {
   CellSet cells;                ///< cubes or boxes that fill the body; none in networks without
   std::vector<Anchor> anchors;  ///< of the supports of cut cells
   Eigen::VectorXd volume;       ///< volume share of each node in the body [m^3]; of carried ones 0
+  Eigen::VectorXd attached;     ///< mass of each node beside the body's own [kg]; empty: none
   std::vector<int> image_of;    ///< per node the node it is a periodic image of (itself if none); empty: no images
   std::vector<std::array<int, 3>> triangles;  ///< of planar networks, anticlockwise
 
@@ -63,7 +64,8 @@ std::vector<char> fixed_or_carried(const Network& network, std::vector<char> fix
 /// @return [m]; 3 * corner + axis
 Eigen::Matrix<double, 24, 1> displacement_of(const Hexahedron& cell, const Network& network, const NodalVectors& x);
 
-/// Mass of each node: rho times its volume share (rho V/8 per cell corner, Golec et al. 2019, sec. 5.4).
+/// Mass of each node: rho times its volume share (rho V/8 per cell corner, Golec et al. 2019, sec. 5.4), and what is
+/// attached to it.
 /// @param network with Network::volume
 /// @param density rho [kg/m^3]
 /// @return [kg], one per node

@@ -232,6 +232,7 @@ Experiment read_document(const TomlTable& document, Experiment experiment) {
   if (experiment.loads.empty() && !document.find("dynamics"))
     throw InputError({experiment.file.string(), 1, 1},
                      "load: is missing (allowed: at least one [[load]], or none beside [dynamics])");
+  read_masses(document, experiment);
   require_density(document, experiment);
   if (const auto section = document.find("section")) experiment.section = read_section(*section);
   experiment.probes = read_probes(document);
@@ -309,6 +310,11 @@ Experiment read_experiment(const std::filesystem::path& file) {
 }
 
 void check_patches(const Experiment& experiment, const std::vector<std::string>& patches) {
+  for (const AttachedMass& mass : experiment.masses)
+    if (!mass.on.empty() && std::find(patches.begin(), patches.end(), mass.on) == patches.end())
+      throw InputError({experiment.file.string(), 0, 0},
+                       fmt::format("mass '{}': on: the body has no patch '{}' (allowed: {}){}", mass.name, mass.on,
+                                   fmt::join(patches, ", "), did_you_mean(mass.on, patches)));
   for (std::size_t i = 0; i < experiment.loads.size(); ++i) {
     const std::string* on = patch_of(experiment.loads[i]);
     if (!on || std::find(patches.begin(), patches.end(), *on) != patches.end()) continue;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "problem/attached_mass.h"
 #include "problem/body.h"
 #include "problem/case_file/units.h"
 #include "problem/course.h"
@@ -131,6 +132,8 @@ struct Experiment {
   std::vector<PatchRule> patches;            ///< defined by rules, in addition to those of the body itself
   std::vector<IsotropicMaterial> materials;  ///< in the file's order, each Poisson's ratio once
   std::vector<Load> loads;
+  std::vector<AttachedMass> masses;            ///< beside the body's own
+  std::size_t weights = 0;                     ///< loads, the last of `loads`, that are the weight of `masses`
   std::vector<SourceLocation> load_locations;  ///< of the [[load]] that each of `loads` came from; may be empty
   std::vector<ModelChoice> models;             ///< empty: the reference alone is verified
   std::vector<std::string> elements = {"q1"};  ///< finite elements compared beside the models, at the same resolutions

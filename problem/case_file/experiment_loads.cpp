@@ -128,4 +128,46 @@ std::vector<Load> read_load(const TomlValue& value) {
   return loads;
 }
 
+namespace {
+
+/// A point, or the two ends of a segment.
+std::vector<Vec3> read_place(const TomlValue& value) {
+  const auto* array = value.node->as_array();
+  if (!array || array->empty() || !array->front().is_array()) return {as_vector(value)};
+  std::vector<Vec3> ends;
+  for (const TomlValue& end : as_list_of(2, value, "[x, y, z], or two such, the ends of a segment"))
+    ends.push_back(as_vector(end));
+  if (ends[0] == ends[1]) refuse(value, "has no length", "two different ends, or one point");
+  return ends;
+}
+
+AttachedMass read_mass(const TomlValue& value) {
+  const TomlTable table(value, keys_of("mass"));
+  AttachedMass mass{as_text(table.at("name")), "", {}, as_number(table.at("mass_kg"), positive_number)};
+  const auto on = table.find("on"), at = table.find("at_m");
+  if (on.has_value() == at.has_value())
+    refuse(value, on ? "is both on a patch and at a place" : "has no place", "one of on and at_m");
+  if (on) mass.on = as_text(*on);
+  if (at) mass.at = read_place(*at);
+  if (const auto weighs = table.find("weighs")) mass.weighs = as_flag(*weighs);
+  return mass;
+}
+
+}  // namespace
+
+void read_masses(const TomlTable& document, Experiment& experiment) {
+  for (const TomlValue& value : document.tables("mass")) {
+    const AttachedMass mass = read_mass(value);
+    for (const AttachedMass& other : experiment.masses)
+      if (other.name == mass.name)
+        refuse(value, fmt::format("has the name '{}' of another mass", mass.name), "a name of its own");
+    experiment.masses.push_back(mass);
+    for (Load& load : weight_of(mass, experiment.loads)) {
+      experiment.loads.push_back(std::move(load));
+      experiment.load_locations.push_back(location_of(value));
+      ++experiment.weights;
+    }
+  }
+}
+
 }  // namespace springproof

@@ -27,6 +27,7 @@ constexpr Key file_keys[] = {
   {"patch",      "parts of its surface",                            "tables headed [[patch]]",                     "those of the body", ""},
   {"material",   "elastic moduli and density",                      "a table [material] with two moduli",          required, ""},
   {"load",       "supports and loads",                              "tables headed [[load]]",                      "required, but beside [dynamics]", ""},
+  {"mass",       "masses hung on the body or glued to it",          "tables headed [[mass]]",                      "none", ""},
   {"compare",    "models and measures",                             "a table",                                     "hybmss, with three measures", ""},
   {"external",   "displacements that another program computed",     "tables headed [[external]]",                  "none", ""},
   {"section",    "a plane on which two deformed states are compared", "a table",                                   "none", ""},
@@ -43,9 +44,9 @@ constexpr Key body_keys[] = {
   {"geo",          "a built-in body, or a file beside the case", "the name of a gmsh script, e.g. \"block.geo\", or of an .stl, .obj, .ply, .msh, .step or .brep file", required, "\"beam.geo\""},
   {"size_m",       "size_x, size_y, size_z of a script",         "[x, y, z], each a finite number > 0, from 1e-6 to 1e9 [m]", "required by scripts", "[0.06, 0.01, 0.01]"},
   {"scale",        "multiplies the coordinates of any other file", above_0,                                          "1",               "0.001"},
-  {"cells",        "cells of a body of hexahedra; several: resolutions", "[nx, ny, nz] or a list of such, integers from 1 to 1000", "one of cells, voxels, voxel_edge_m is required", "[[12, 2, 2], [24, 4, 4]]"},
-  {"voxels",       "about so many cells, cut out along the surface of any body", "a whole number from 1 to 4e6, or a list of such", "one of cells, voxels, voxel_edge_m is required", "[1500, 5000]"},
-  {"voxel_edge_m", "edge of such cells",                         "a finite number > 0, or a list of such",           "one of cells, voxels, voxel_edge_m is required", "[0.01, 0.005]"},
+  {"cells",        "cells of a body of hexahedra; several: resolutions", "[nx, ny, nz] or a list of such, integers from 1 to 1000", "one of the three", "[[12, 2, 2], [24, 4, 4]]"},
+  {"voxels",       "about so many cells, cut out along the surface of any body", "a whole number from 1 to 4e6, or a list of such", "one of the three", "[1500, 5000]"},
+  {"voxel_edge_m", "edge of such cells",                         "a finite number > 0, or a list of such",           "one of the three", "[0.01, 0.005]"},
   {"cut",          "with voxels; false: whole cubes whose centres lie in the body", a_flag,                          "true, for models that take cut cells", "false"},
   {"accuracy",     "with one voxels or voxel_edge_m: cells are halved until this error is promised", "a number from 0.001 to 0.5, or a list of such", "cells of one size", "0.05"},
 };
@@ -75,11 +76,11 @@ constexpr Key near_keys[] = {
 };
 
 constexpr Key material_keys[] = {
-  {"youngs_modulus_Pa", "Young's modulus",        "a finite number > 0, or a list of such",      "two moduli are required", "1e6"},
-  {"poisson_ratio",     "Poisson's ratio",        "-1 < poisson_ratio < 0.5, or a list of such", "two moduli are required", "[0.25, 0.45, 0.49]"},
-  {"shear_modulus_Pa",  "shear modulus",          "a finite number > 0, or a list of such",      "two moduli are required", "4e5"},
-  {"bulk_modulus_Pa",   "bulk modulus",           "a finite number > 0, or a list of such",      "two moduli are required", "1e6"},
-  {"lame_lambda_Pa",    "Lame's first parameter", "a finite number, or a list of such",          "two moduli are required", "4e5"},
+  {"youngs_modulus_Pa", "Young's modulus",        "a finite number > 0, or a list of such",      "two moduli", "1e6"},
+  {"poisson_ratio",     "Poisson's ratio",        "-1 < poisson_ratio < 0.5, or a list of such", "two moduli", "[0.25, 0.45, 0.49]"},
+  {"shear_modulus_Pa",  "shear modulus",          "a finite number > 0, or a list of such",      "two moduli", "4e5"},
+  {"bulk_modulus_Pa",   "bulk modulus",           "a finite number > 0, or a list of such",      "two moduli", "1e6"},
+  {"lame_lambda_Pa",    "Lame's first parameter", "a finite number, or a list of such",          "two moduli", "4e5"},
   {"density_kg_m3",     "density",                above_0,                                       "1000; required by gravity", "1100"},
 };
 
@@ -153,7 +154,7 @@ constexpr Key dynamics_keys[] = {
   {"duration_s",       "of the motion",                                           above_0,                                         required,   "10"},
   {"integrator",       "of the models' steps",                                    "explicit, energy_momentum, implicit_euler, auto", "explicit", "\"auto\""},
   {"start",            "equilibrium: from that under the loads, which are then removed", "rest, equilibrium",                      "rest",     "\"equilibrium\""},
-  {"time_step_s",      "of the models",                                           "a finite number > 0, up to duration_s",         "safe for each model; implicit: that of the samples, up to 10 safe ones", "1e-3"},
+  {"time_step_s",      "of the models",                                           "a finite number > 0, up to duration_s",         "safe; implicit: that of the samples, up to 10 safe ones", "1e-3"},
   {"damping_1_s",      "Rayleigh's damping, of the mass",                         from_0,                                          "0",        "0.5"},
   {"viscosity_s",      "Rayleigh's damping, of the strain",                       from_0,                                          "0",        "1e-3"},
   {"loss_factor",      "of the material at both ends of band_Hz, instead of the two", "a finite number >= 0, up to 1",              "0",        "0.1"},
@@ -187,6 +188,14 @@ constexpr Key fracture_keys[] = {
   {"seeds",     "number of samples",                                    "a whole number from 1 to 1000",     "1",                    "5"},
 };
 
+constexpr Key mass_keys[] = {
+  {"name",    "its name, in messages and reports",                "a name",                                              required,              "\"weight\""},
+  {"at_m",    "a point of the body, or the ends of a segment that it is spread along", "[x, y, z], or two such",         "one of at_m, on is required", "[[0.1, 0, 0.03], [0.1, 0.03, 0.03]]"},
+  {"on",      "a patch that it is spread over",                   "the name of a patch",                                 "one of at_m, on is required", "\"x_max\""},
+  {"mass_kg", "mass",                                             above_0,                                               required,              "0.052"},
+  {"weighs",  "whether gravity acts on it; false: inertia alone", a_flag,                                                "true",                "false"},
+};
+
 constexpr Key probe_keys[] = {
   {"name", "part of the names of its rows", "a name",  required, "\"tip\""},
   {"at_m", "a rest position",               a_vector,  required, "[0.06, 0.005, 0.005]"},
@@ -206,12 +215,12 @@ constexpr Key expect_keys[] = {
   {"model",           "whose value is judged",                          "a model of [compare], or fem, fem_q1, ...",          required,               "\"hybmss\""},
   {"measure",         "a name of results.csv",                          "the name of a row",                                  required,               "\"displacement_error\""},
   {"source",          "where the expected value is from",               "analytic, extrapolated FEM, published, regression",  required,               "\"analytic\""},
-  {"poisson_ratio",   "at which it is judged",                          "a finite number, one of the case's",                 "at each of the case's", "0.25"},
-  {"cells",           "at which it is judged",                          "[nx, ny, nz], integers from 1 to 1000",              "at each of the case's", "[12, 2, 2]"},
-  {"value",           "the expected value, in the unit of the measure", "a finite number",                                    "that of the reference; required but by extrapolated FEM", "0"},
-  {"within",          "tolerance, in the unit of the measure",          from_0,                                               "one of within, within_relative, at_least is required", "0.04"},
-  {"within_relative", "tolerance, as a part of the value",              from_0,                                               "one of within, within_relative, at_least is required", "0.01"},
-  {"at_least",        "no value: what it must reach",                   "a finite number",                                    "one of within, within_relative, at_least is required", "0.9"},
+  {"poisson_ratio",   "at which it is judged",                          "a finite number, one of the case's",                 "at each", "0.25"},
+  {"cells",           "at which it is judged",                          "[nx, ny, nz], integers from 1 to 1000",              "at each", "[12, 2, 2]"},
+  {"value",           "the expected value, in the unit of the measure", "a finite number",                                    "the reference's, of extrapolated FEM", "0"},
+  {"within",          "tolerance, in the same unit",          from_0,                                               "one of the three", "0.04"},
+  {"within_relative", "tolerance, as a part of the value",              from_0,                                               "one of the three", "0.01"},
+  {"at_least",        "no value: what it must reach",                   "a finite number",                                    "one of the three", "0.9"},
   {"where",           "of the source",                                  "a string",                                           "none",                 "\"Table 3\""},
 };
 
@@ -228,21 +237,22 @@ constexpr Key published_keys[] = {
 constexpr KeyTable tables[] = {
   {"",                           "The file",                         "Every table of a case.",                                      file_keys},
   {"body",                       "[body]",                           "",                                                            body_keys},
-  {"patch",                      "[[patch]]",                        "A part of the surface, where all its conditions hold. Of a body of voxels facets are cut along its border (with `facing`, they are taken whole); of a body of hexahedra the border must run along lines of every grid, those of the reference too (its finest cells, half and a quarter of them). A box that reaches a little below the edge of a face also takes that strip of the side faces.", patch_keys},
-  {"patch.beyond",               "beyond of [[patch]]",              "",                                                            beyond_keys},
-  {"patch.facing",               "facing of [[patch]]",              "",                                                            facing_keys},
-  {"patch.near",                 "near of [[patch]]",                "",                                                            near_keys},
+  {"patch",                      "[[patch]]",                        "A part of the surface, where all its conditions hold. Facets of a body of voxels are cut along its border (with `facing`, they are taken whole); of a body of hexahedra the border must run along lines of every grid, those of the reference too (its finest cells, half and a quarter of them). A box that reaches below the edge of a face also takes that strip of the side faces.", patch_keys},
+  {"patch.beyond",               "",                                 "",                                                            beyond_keys},
+  {"patch.facing",               "",                                 "",                                                            facing_keys},
+  {"patch.near",                 "",                                 "",                                                            near_keys},
   {"material",                   "[material]",                       "Two moduli. A single number goes with each of a list; two lists are read in pairs.", material_keys},
-  {"load.displacement_m",        "[[load]] a displacement",          "",                                                            displacement_keys},
-  {"load.displacement_gradient", "[[load]] an affine displacement",  "",                                                            affine_keys},
-  {"load.rotation_deg",          "[[load]] a rotation",              "",                                                            rotation_keys},
-  {"load.field",                 "[[load]] an exact displacement",   "",                                                            field_keys},
-  {"load.traction_Pa",           "[[load]] a traction",              "",                                                            traction_keys},
-  {"load.pressure_Pa",           "[[load]] a pressure",              "",                                                            pressure_keys},
-  {"load.force_N",               "[[load]] a force on a patch",      "",                                                            patch_force_keys},
-  {"load.at_m",                  "[[load]] a force at a point",      "",                                                            point_force_keys},
-  {"load.gravity_m_s2",          "[[load]] gravity",                 "",                                                            gravity_keys},
-  {"load.body_force_of",         "[[load]] the force of an exact field", "Under kinematics = \"linear\", with models = [].",        body_force_keys},
+  {"load.displacement_m",        "a displacement",                   "",                                                            displacement_keys},
+  {"load.displacement_gradient", "an affine displacement",           "",                                                            affine_keys},
+  {"load.rotation_deg",          "a rotation",                       "",                                                            rotation_keys},
+  {"load.field",                 "an exact displacement",            "",                                                            field_keys},
+  {"load.traction_Pa",           "a traction",                       "",                                                            traction_keys},
+  {"load.pressure_Pa",           "a pressure",                       "",                                                            pressure_keys},
+  {"load.force_N",               "a force on a patch",               "",                                                            patch_force_keys},
+  {"load.at_m",                  "a force at a point",               "",                                                            point_force_keys},
+  {"load.gravity_m_s2",          "gravity",                          "",                                                            gravity_keys},
+  {"load.body_force_of",         "the force of an exact field",          "Under kinematics = \"linear\", with models = [].",        body_force_keys},
+  {"mass",                       "[[mass]]",                         "Beside the body's own: inertia in motions and frequencies, and weight where a load is gravity.", mass_keys},
   {"compare",                    "[compare]",                        "",                                                            compare_keys},
   {"reference",                  "[reference]",                      "",                                                            reference_keys},
   {"probe",                      "[[probe]]",                        "",                                                            probe_keys},
@@ -251,9 +261,9 @@ constexpr KeyTable tables[] = {
   {"expect",                     "[[expect]]",                       "",                                                            expect_keys},
   {"published",                  "[[published]]",                    "",                                                            published_keys},
   {"external",                   "[[external]]",                     "Displacements by any program ([engines](engines.md#any-program-beside-the-models)).", external_keys},
-  {"external.files",             "files of [[external]]",            "",                                                            external_file_keys},
+  {"external.files",             "",                                 "",                                                            external_file_keys},
   {"dynamics",                   "[dynamics]",                       "Under any kinematics but \"linear\" ([motion](motion.md)). Each model is computed twice: its equilibrium, and its state after `duration_s`, labelled `NAME in motion`.",  dynamics_keys},
-  {"dynamics.plane",             "plane of [dynamics]",              "",                                                            plane_keys},
+  {"dynamics.plane",             "",                                 "",                                                            plane_keys},
   {"fracture",                   "[fracture]",                       "Under kinematics = \"linear\", on supports at rest ([fracture](fracture.md)).", fracture_keys},
 };
 
@@ -287,10 +297,42 @@ constexpr std::pair<std::string_view, std::string_view> usual_names[] = {
 
 // Longer ones first.
 constexpr std::pair<std::string_view, const char*> units[] = {
-  {"_kg_m3", "kg/m³"}, {"_m_s2", "m/s²"}, {"_rad_s", "rad/s"}, {"_m_s", "m/s"}, {"_1_s", "1/s"},
+  {"_kg_m3", "kg/m³"}, {"_kg", "kg"}, {"_m_s2", "m/s²"}, {"_rad_s", "rad/s"}, {"_m_s", "m/s"}, {"_1_s", "1/s"},
   {"_Pa", "Pa"}, {"_Hz", "Hz"}, {"_deg", "°"}, {"_N", "N"}, {"_m", "m"}, {"_s", "s"},
 };
 // clang-format on
+
+/// What a refusal says of a value, and how the page says it.
+constexpr std::pair<std::string_view, std::string_view> on_page[] = {
+    {", each a finite number or \"free\"", ", \"free\" in place of any"},
+    {"each a finite number >", "each >"},
+    {", each a finite number", ""},
+    {"a finite number", "number"},
+    {"a whole number", "integer"},
+    {"an integer", "integer"},
+    {"a number", "number"},
+    {", or a list of such", " or list"},
+};
+
+/// "" of a key that heads a table of its own.
+std::string value_of(const Key& key) {
+  std::string value = *key.example ? key.allowed : "";
+  for (const auto& [said, shorter] : on_page)
+    if (const auto at = value.find(said); at != std::string::npos) value.replace(at, said.size(), shorter);
+  return value;
+}
+
+std::string section_of(std::string_view heading, std::string_view what) {
+  return fmt::format("\n## {}\n\n{}{}| key | what | value | unit | default | example |\n|---|---|---|---|---|---|\n",
+                     heading, what, what.empty() ? "" : "\n\n");
+}
+
+/// `inside`: "plane." of a key of the table plane of [dynamics].
+std::string row_of(const Key& key, std::string_view inside) {
+  return fmt::format("| `{}{}` | {} | {} | {} | {} | {} |\n", inside, key.name, key.what, value_of(key), unit_of(key),
+                     key.otherwise ? key.otherwise : "required",
+                     *key.example ? fmt::format("`{}`", key.example) : "below");
+}
 
 }  // namespace
 
@@ -318,22 +360,30 @@ std::string keys_page() {
   std::string page =
       "# Keys of a case file\n\n"
       "Printed by `springproof describe keys`. A case is a file in TOML; the [tutorial](tutorial.md) has a first one. "
-      "Any other key, type or number is refused with its line, what is allowed and the nearest key.\n";
+      "Any other key, type or number is refused with its line, what is allowed and the nearest key. Numbers are "
+      "finite; x, y, z are numbers.\n";
+  bool loads = false;
   for (const KeyTable& table : tables) {
-    page += fmt::format("\n## {}\n\n", table.heading);
-    if (*table.what) page += fmt::format("{}\n\n", table.what);
-    page += "| key | what it is | value | unit | without it | example |\n|---|---|---|---|---|---|\n";
+    const std::string_view name = table.name;
+    const bool load = name.starts_with("load.");
+    if (load && !std::exchange(loads, true))
+      page += section_of("[[load]]",
+                         "One of these kinds; all but the last three act on a patch or a list of patches: "
+                         "`on = \"x_min\"`.");
+    if (load)
+      page += fmt::format("| *{}* | {} | | | | |\n", table.heading, table.what);
+    else if (*table.heading)
+      page += section_of(table.heading, table.what);
+    const std::string inside = *table.heading ? "" : fmt::format("{}.", name.substr(name.find('.') + 1));
     for (const Key& key : table.keys)
-      page += fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", key.name, key.what, key.allowed, unit_of(key),
-                          key.otherwise ? key.otherwise : "required",
-                          *key.example ? fmt::format("`{}`", key.example) : "below");
+      if (!load || std::string_view(key.name) != on.name) page += row_of(key, inside);
   }
   page +=
       "\n## Units\n\nUnder `units = \"mm\"` keys end as below; files of bodies (but STEP, which states its unit) "
       "and of `[[external]]` are in mm, values of `[[expect]]`, `[[published]]`, results and report in mm, N, MPa "
       "and t. Springs files, VTU, glTF and notes stay in SI.\n\n"
-      "| `units` | in place of `_m` | `_Pa` | `_kg_m3` | `_m_s2` | `_m_s` |\n|---|---|---|---|---|---|\n| `\"mm\"` |";
-  for (const char* ending : {"_m", "_Pa", "_kg_m3", "_m_s2", "_m_s"})
+      "| `units` | in place of `_m` | `_Pa` | `_kg_m3` | `_kg` | `_m_s2` | `_m_s` |\n|---|---|---|---|---|---|---|\n| `\"mm\"` |";
+  for (const char* ending : {"_m", "_Pa", "_kg_m3", "_kg", "_m_s2", "_m_s"})
     page += fmt::format(" `{}` |", key_in(Units::mm, ending).name);
   return page + "\n";
 }

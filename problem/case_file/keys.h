@@ -20,7 +20,7 @@ struct Key {
 /// A table of the case file, or one kind of its [[load]]s.
 struct KeyTable {
   const char* name;     ///< "dynamics.plane", "load.pressure_Pa"; "" for the file itself
-  const char* heading;  ///< "[dynamics] plane = { }"
+  const char* heading;  ///< "[dynamics]"; of a [[load]] its kind, "a rotation"; "" of a table inside another
   const char* what;     ///< what it says, and in which cases it may stand
   std::span<const Key> keys;
 };

@@ -13,17 +13,14 @@ struct Row {
   double mm_in_si;
 };
 
-constexpr Row units_of_results[] = {
-    {"m", "mm", 1e-3},       {"Pa", "MPa", 1e6},        {"N m", "N mm", 1e-3},         {"J", "mJ", 1e-3},
-    {"J/m2", "mJ/mm2", 1e3}, {"1/m", "1/mm", 1e3},      {"m/s²", "mm/s²", 1e-3},       {"kg/m³", "t/mm³", 1e12},
-    {"kg m/s", "t mm/s", 1}, {"N m s", "N mm s", 1e-3}, {"kg m^2/s", "t mm^2/s", 1e-3}};
+constexpr Row units_of_results[] = {{"m", "mm", 1e-3},       {"Pa", "MPa", 1e6},        {"N m", "N mm", 1e-3},
+                                    {"J", "mJ", 1e-3},       {"J/m2", "mJ/mm2", 1e3},   {"1/m", "1/mm", 1e3},
+                                    {"m/s²", "mm/s²", 1e-3}, {"kg/m³", "t/mm³", 1e12},  {"kg", "t", 1e3},
+                                    {"kg m/s", "t mm/s", 1}, {"N m s", "N mm s", 1e-3}, {"kg m^2/s", "t mm^2/s", 1e-3}};
 
 // Of the endings of keys, longer ones first; those with the same name in both hide the shorter ones that they end with.
-constexpr Row endings_of_keys[] = {{"_kg_m3", "_t_mm3", 1e12},
-                                   {"_m_s2", "_mm_s2", 1e-3},
-                                   {"_m_s", "_mm_s", 1e-3},
-                                   {"_Pa", "_MPa", 1e6},
-                                   {"_m", "_mm", 1e-3}};
+constexpr Row endings_of_keys[] = {{"_kg_m3", "_t_mm3", 1e12}, {"_m_s2", "_mm_s2", 1e-3}, {"_m_s", "_mm_s", 1e-3},
+                                   {"_Pa", "_MPa", 1e6},       {"_kg", "_t", 1e3},        {"_m", "_mm", 1e-3}};
 
 bool is_part_of_a_key(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
 

@@ -75,6 +75,15 @@ std::vector<Case> cases() {
         all.push_back({name + "_boxes_curve" + std::to_string(curve), {boxes, {law}}, true});
       }
     }
+  for (const auto& [name, network] : {std::pair("MeasuredCut", cut), std::pair("MeasuredFull", cells)}) {
+    MeasuredCells measured;
+    for (std::size_t c = 0; c < network.cells.size(); ++c) {
+      const NodalVectors numbers = test::noise(108, 100, static_cast<unsigned>(c) + 1);
+      const Eigen::Map<const DeformationForm> A(numbers.data());
+      measured.add_form(A * A.transpose());
+    }
+    all.push_back({name, {network, {measured}}, true});
+  }
   all.push_back({"Anchors", {cut, {Anchors{}}}, true});
   all.push_back({"AnchorsRefined", {refined, {Anchors{}}}, true});
   const Network sheet = test::bent_triangles();

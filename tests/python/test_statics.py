@@ -38,6 +38,24 @@ def test_the_bar_of_the_tutorial_bends_as_from_cpp():
     assert state.residual < 1e-9 and "multigrid" in state.solver
 
 
+def test_masses_on_a_body_weigh_and_are_inertia():
+    bar = sp.block(size=(0.4, 0.1, 0.1), cells=(8, 2, 2))
+    weights = [sp.Mass(2, (0.4, 0.05, 0.05)), sp.Mass(1, [(0.4, 0, 0), (0.4, 0.1, 0)]), sp.Mass(3, on="x_max", weighs=False)]
+    model = sp.Model("hybmss_avg", bar, RUBBER, masses=weights)
+    assert model.masses.sum() == pytest.approx(1100 * 0.004 + 6)
+    state = model.solve([sp.Displacement("x_min"), sp.Gravity((0, 0, -10))])
+    np.testing.assert_allclose(state.reactions["x_min"][0], [0, 0, (1100 * 0.004 + 3) * 10], atol=1e-8)
+    free, light = model.motion(forces=np.ones(model.positions.shape)), sp.Model("hybmss_avg", bar, RUBBER)
+    free.step(10)
+    assert (model.masses @ free.velocities)[0] == pytest.approx((free.time - free.time_step / 2) * len(model.positions))
+    assert model.safe_time_step >= light.safe_time_step
+    for wrong in ({"mass": 0, "at": (0, 0, 0)}, {"mass": 1}, {"mass": 1, "at": (0, 0, 0), "on": "x_max"}):
+        with pytest.raises(sp.InputError, match="allowed"):
+            sp.Mass(**wrong)
+    with pytest.raises(sp.InputError, match="mass"):
+        sp.Model("hybmss_avg", bar, RUBBER, masses=[sp.Mass(1, (9, 0, 0))])
+
+
 @pytest.mark.parametrize("name", [row["name"] for row in sp.models()])
 def test_every_model_of_the_table_carries_its_load(name):
     model = sp.Model(name, body_for(name), RUBBER)

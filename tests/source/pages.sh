@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Every file and heading that a page refers to is there: targets of links, and `paths` that begin with a folder of the source tree.
-# A decision has at most 120 words, and a line in the index; README and docs have at most 55,000.
+# A decision has at most 120 words, and a line in the index; README and docs have at most 55,000, of which users' pages 20,000.
 #   pages.sh SOURCE-FOLDER
 . "$(dirname "$0")/../cli/lib.sh"
 cd "$1" || exit 1
@@ -57,11 +57,19 @@ for page in docs/decisions/*.md; do
     grep -qF "](${page#docs/}#$anchor)" docs/decisions.md || fail "$page#$anchor is not in docs/decisions.md"
   done < <(anchors <(grep '^##' "$page"))
 done
-# README and docs together; bars and rules of tables are no words.
+# Words of pages; bars and rules of tables are no words.
+words_of() { cat "$@" | awk '{ for (i = 1; i <= NF; ++i) words += $i !~ /^[-|:]+$/ } END { print words }'; }
+
 most_words=55000
-words=$(cat README.md docs/*.md docs/*/*.md | awk '{ for (i = 1; i <= NF; ++i) words += $i !~ /^[-|:]+$/ } END { print words }')
+words=$(words_of README.md docs/*.md docs/*/*.md)
 [ "$words" -le $most_words ] || fail "README and docs have $words words (at most $most_words)"
+# Users' pages: all but those for whoever works on the project, the papers, and what was measured (docs/measured/).
+most_users_words=20000
+mapfile -t users_pages < <(ls README.md docs/*.md | grep -vE '/(contributing|decisions|failed_attempts|papers)[.]md$')
+users_words=$(words_of "${users_pages[@]}")
+[ "$users_words" -le $most_users_words ] || fail "users' pages have $users_words words (at most $most_users_words): say a thing once, measurements in docs/measured/"
+[ ${#users_pages[@]} -ge 15 ] || fail "only ${#users_pages[@]} users' pages found"
 [ $decisions -ge 50 ] || fail "only $decisions decisions found"
 [ $found -ge 50 ] || fail "only $found links and paths found"
-echo "$found links and paths, $decisions decisions, $words words"
+echo "$found links and paths, $decisions decisions, $words words, $users_words of them in users' pages"
 exit $((failures > 0))

@@ -18,9 +18,13 @@ std::string options_page() {
   std::string page =
       "\n## Options of models\n\nIn `models = [{ model = \"hybmss\", face_to_cube = 1 }]`; a model refuses what it "
       "does not have. Those on which moduli depend are options of `springproof material` and `homogenise` too.\n\n"
-      "| option | what it is | value |\n|---|---|---|\n";
-  for (const ModelOption& option : model_options())
-    page += fmt::format("| `{}` | {} | {} |\n", option.name, option.what, option.allowed);
+      "| option | what | value |\n|---|---|---|\n";
+  for (const ModelOption& option : model_options()) {
+    std::string value = option.allowed;  // "0 <= shift <= 1" is "0 to 1" beside the name
+    const std::string between = fmt::format(" <= {} <= ", option.name);
+    if (const auto at = value.find(between); at != std::string::npos) value.replace(at, between.size(), " to ");
+    page += fmt::format("| `{}` | {} | {} |\n", option.name, option.what, value);
+  }
   return page;
 }
 

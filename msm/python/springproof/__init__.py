@@ -26,6 +26,7 @@ from ._springproof import (
     Force,
     Gravity,
     InputError,
+    Mass,
     Material,
     Model,
     Motion,

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "problem/system/input_error.h"
 #include "support/bodies.h"
 #include "support/fem_block.h"
 
@@ -47,6 +48,38 @@ TEST(FemNaturalModes, OfAFreeCubeHoldLamesModes) {  // with order four, from the
       EXPECT_LT(fine, 5e-4) << nu << tetrahedra;
       EXPECT_GT(coarse / fine, 8) << nu << tetrahedra;
     }
+}
+
+TEST(FemNaturalModes, OfAColumnWithAMassOnItsEndAreExact) {
+  // Sides on rollers: plane waves, b tan b = body's mass / attached mass = 1/5.
+  const Vec3 size{0.4, 0.1, 0.1};
+  for (const bool tetrahedra : {false, true}) {
+    fem::GridProblem problem = modes_of(size, {8, 1, 1}, 2, 0.3, 2);
+    if (tetrahedra) problem.coarse = test::tetrahedra_block(problem.coarse);
+    problem.loads = {PrescribedDisplacement{"x_min", {0, std::nullopt, std::nullopt}}};
+    for (const char* on : {"y_min", "y_max"})
+      problem.loads.push_back(PrescribedDisplacement{on, {std::nullopt, 0, std::nullopt}});
+    for (const char* on : {"z_min", "z_max"})
+      problem.loads.push_back(PrescribedDisplacement{on, {std::nullopt, std::nullopt, 0}});
+    problem.masses = {{"weight", "x_max", {}, 5 * size.prod() * problem.material.density}};
+    const double exact =
+        0.432841 / (2 * std::numbers::pi * size[0]) *
+        std::sqrt((lame_lambda(problem.material) + 2 * shear_modulus(problem.material)) / problem.material.density);
+    const fem::Solution s = fem::solve_grid(problem);
+    ASSERT_TRUE(s.ok) << s.message;
+    EXPECT_NEAR(s.frequencies[0], exact, 1e-4 * exact) << tetrahedra;
+  }
+}
+
+TEST(FemNaturalModes, AMassOutsideOfTheBodyIsRefusedByItsName) {
+  fem::GridProblem problem = modes_of({1, 1, 1}, {1, 1, 1}, 2, 0.3, 2);
+  problem.masses = {{"far", "", {{9, 0, 0}}, 1}};
+  try {
+    fem::solve_grid(problem);
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("mass 'far': "), std::string::npos) << e.what();
+  }
 }
 
 TEST(FemNaturalModes, WhereCopiesOfMultipleEigenvaluesAreMissedMoreAreAskedFor) {

@@ -244,6 +244,20 @@ TEST(VoxelBody, TorquesMoveToTheTruePatch) {
   EXPECT_EQ(moved[0].force, force);
 }
 
+TEST(VoxelBody, TetrahedraAreSmallWhereAHeldPatchEndsOnASmoothSurface) {
+  const auto growth = [](const std::string& from, const std::string& to) {
+    std::string text = ball_case(100, "", "\"hybmss_avg\"", "elements = [\"p2\"]\nedge_m = 0.05");
+    text.replace(text.find(from), from.size(), to);
+    const PreparedCase prepared = prepare(parse_experiment(text, "ball.toml"));
+    return double(prepared.body.tetrahedra.back()->tetrahedra.size()) / prepared.body.uncut.back();
+  };
+  const std::string low = "beyond = { point_m = [0.1, 0.1, 0.06], normal = [0.2, 0, -1] }";
+  EXPECT_GT(growth(low, low), 5);
+  EXPECT_LT(growth(low, "facing = { direction = [0, 0, -1], within_deg = 60 }"), 2) << "a ragged border";
+  EXPECT_LT(growth("[body]", "kinematics = \"hencky\"\n[body]"), 2) << "at large strain small cells snap";
+  EXPECT_LT(growth("on = \"low\"", "on = \"surface\""), 2) << "held all around";
+}
+
 struct Mistake {
   const char* name;
   const char* of;  ///< in the good case

@@ -143,7 +143,7 @@ TEST_F(VoxelReference, ElementsBesideTheModelsRunAtTheirResolutions) {
 
 TEST_F(VoxelReference, AStiffMotionIsTheSameInTetrahedraAndCubes) {
   // A body turned and moved as a whole (first order): every mesh, and what is taken from it outside the body, is exact.
-  std::string text = ball_case(100, "", "\"hybmss\"", "edge_m = 0.035");
+  std::string text = ball_case(100, "", "\"hybmss\"", "edge_m = 0.025");
   const std::string held = "displacement_m = [0, 0, 0]";
   text.replace(
       text.find(held), held.size(),

@@ -22,6 +22,7 @@ Values beside(const std::string& table, const std::string& key) {
       {"patch", {{"box_m", "[[0, 0, 0], [1, 1, 1]]"}}},
       {"material", {{"youngs_modulus_Pa", "1e6"}, {"poisson_ratio", "0.25"}}},
       {"expect", {{"value", "1"}, {"within", "0.04"}}},
+      {"mass", {{"on", "\"x_max\""}}},
       {"external", {{"file", "\"abaqus.csv\""}}}};
   static const Values voxels = {{"cells", ""}, {"voxels", "100"}}, no_young = {{"youngs_modulus_Pa", ""}};
   static const std::map<std::string, Values> of_key = {
@@ -34,6 +35,7 @@ Values beside(const std::string& table, const std::string& key) {
       {"material.bulk_modulus_Pa", no_young},
       {"material.lame_lambda_Pa", no_young},
       {"compare.exact", {{"models", "[]"}}},
+      {"mass.at_m", {{"on", ""}}},
       {"reference.integrator", {{"in_time", "true"}}},
       {"expect.within_relative", {{"within", ""}}},
       {"expect.at_least", {{"value", ""}, {"within", ""}}},
@@ -70,7 +72,7 @@ std::string heading_of(const std::string& table) {
       {"dynamics.plane", "[dynamics]\nduration_s = 10\n[dynamics.plane]\n"}};
   if (const auto part = parts.find(table); part != parts.end()) return part->second;
   if (table.starts_with("load.")) return "[[load]]\n";
-  const std::set<std::string> several = {"patch", "probe", "expect", "published", "external"};
+  const std::set<std::string> several = {"patch", "mass", "probe", "expect", "published", "external"};
   return several.contains(table) ? "[[" + table + "]]\n" : "[" + table + "]\n";
 }
 

@@ -1,0 +1,143 @@
+#include "msm/coarsening/measure_cells.h"
+
+#include <atomic>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+#include "msm/coarsening/cell_patches.h"
+#include "msm/coarsening/force_fit.h"
+#include "msm/coarsening/states.h"
+#include "msm/kernels/workers.h"
+
+namespace springproof {
+namespace {
+
+constexpr double most_apart = 2;  // energies of the states by two settings of the fit
+constexpr FitSettings in_metric_of_scalars = {0.3, 0.3, 4, true};
+
+/// States of a cell, as the fine lattice has them: one per column.
+struct CellStates {
+  Eigen::MatrixXd y;  ///< deformations [m]; empty: the cell cannot be measured
+  Eigen::MatrixXd s;  ///< stresses [N]
+};
+
+/// The states of some cells under loads all over the body, from those of averaged springs, scaled to unit work.
+class StatesOfCells {
+ public:
+  StatesOfCells(const CellPatches& patches, const MassSpringModel& today) : patches_(patches) {
+    const Eigen::MatrixXd loads = loads_all_over(today.network, 0);
+    states_ = displacements_under(today, loads);
+    for (Eigen::Index i = 0; i < states_.cols(); ++i) states_.col(i) /= std::sqrt(states_.col(i).dot(loads.col(i)));
+  }
+
+  /// Of the numbers `cells`, into `all`.
+  void measure(const std::vector<int>& cells, const MeasureOptions& options, std::vector<CellStates>& all) const {
+    std::atomic<std::size_t> next = 0;
+    std::atomic<bool> stop = false;
+    Workers(options.threads).run([&](int) {
+      for (std::size_t i = next++; i < cells.size() && !stop; i = next++) {
+        if (options.interrupted && options.interrupted()) stop = true;
+        all[cells[i]] = of_cell(cells[i]);
+      }
+    });
+    if (stop) throw std::runtime_error("interrupted");
+  }
+
+ private:
+  CellStates of_cell(int cell) const {
+    const PatchAnswer answer = patches_.answer(cell);
+    if (answer.nodes.empty()) return {};
+    Eigen::MatrixXd U(answer.deformation.cols(), states_.cols());
+    for (std::size_t n = 0; n < answer.nodes.size(); ++n)
+      U.middleRows(3 * static_cast<Eigen::Index>(n), 3) = states_.middleRows(3 * answer.nodes[n], 3);
+    return {answer.deformation * U, answer.stress * U};
+  }
+
+  const CellPatches& patches_;
+  Eigen::MatrixXd states_;
+};
+
+/// Energy of the states of a cell, twice.
+double energy(const DeformationForm& M, const Eigen::MatrixXd& y) { return y.cwiseProduct(M * y).sum(); }
+
+/// Of averaged springs unless the states determine it.
+DeformationForm measured_form(const DeformationForm& today, const CellStates& states, int& as_today) {
+  if (states.y.size() > 0) {
+    const DeformationForm form = fit_form(today, states.y, states.s),
+                          other = fit_form(today, states.y, states.s, in_metric_of_scalars);
+    const double ratio = energy(form, states.y) / energy(other, states.y);
+    if (ratio <= most_apart && ratio >= 1 / most_apart) return form;
+  }
+  ++as_today;
+  return today;
+}
+
+double bulk_modulus(const AveragedSprings& law) { return law.lame_lambda + 2 * law.shear_modulus / 3; }
+
+using NodalView = Eigen::Map<const NodalVectors>;
+
+}  // namespace
+
+MeasuredBody measure_cells(const MeasuredIn& in, const MeasureOptions& options) {
+  std::vector<CellStates> states(in.coarse.cells.size());
+  std::vector<int> free(states.size()), near_supports;
+  std::iota(free.begin(), free.end(), 0);
+  if (!in.held.empty()) {
+    const CellPatches patches(in.coarse, in.fine, in.law, in.held);
+    const std::vector<char> near = patches.near_supports();
+    std::erase_if(free, [&](int cell) {
+      if (near[cell]) near_supports.push_back(cell);
+      return near[cell] != 0;
+    });
+    StatesOfCells(patches, held_cells(in.coarse, in.held, in.law)).measure(near_supports, options, states);
+  }
+  const CellPatches patches(in.coarse, in.fine, in.law);
+  const MassSpringModel today = held_cells(in.coarse, {}, in.law);
+  StatesOfCells(patches, today).measure(free, options, states);
+  MeasuredBody measured;
+  for (std::size_t c = 0; c < states.size(); ++c)
+    measured.cells.add_form(measured_form(form_of(in.law, today.network.cells.shape(c)), states[c], measured.as_today));
+  const FineTruth truth(in);
+  measured.error_today = truth.error(in.law);
+  measured.error = truth.error(measured.cells);
+  return measured;
+}
+
+FineTruth::FineTruth(const MeasuredIn& in) : in_(in), P_(prolongation(in.coarse, in.fine)) {
+  constexpr int number = 25;  // of the loads: a force on one end of the body, taken by another; and a body force
+  const MassSpringModel model = held_cells(in.fine.body, in.held, in.law);
+  Network as_wide = model.network;
+  as_wide.cells.edge = in.coarse.grid.edge;
+  const Eigen::MatrixXd loads = loads_all_over(as_wide, 1);
+  const Eigen::VectorXd load = loads.col(0) + loads.col(number), truth = displacements_under(model, load);
+  load_ = NodalView(load.data(), load.size() / 3, 3).topRows(P_.rows());
+  truth_ = NodalView(truth.data(), truth.size() / 3, 3).topRows(P_.rows());
+  volume_ = model.network.volume.head(P_.rows());
+  for (Eigen::Index n = 0; n < P_.rows(); ++n)
+    if (P_.outerIndexPtr()[n] == P_.outerIndexPtr()[n + 1]) volume_[n] = 0;
+}
+
+double FineTruth::error(const ForceLaw& of_cells) const {
+  const MassSpringModel model = held_cells(in_.coarse, in_.held, of_cells);
+  NodalVectors load = NodalVectors::Zero(model.network.X.rows(), 3);
+  load.topRows(P_.cols()) = P_.transpose() * load_;
+  const Eigen::VectorXd u = displacements_under(model, Eigen::Map<const Eigen::VectorXd>(load.data(), load.size()));
+  const NodalVectors off = P_ * NodalView(u.data(), u.size() / 3, 3).topRows(P_.cols()) - truth_;
+  return std::sqrt(volume_.dot(off.rowwise().squaredNorm()) / volume_.dot(truth_.rowwise().squaredNorm()));
+}
+
+MeasuredCells in_material(const MeasuredCells& measured, const CellSet& cells, const AveragedSprings& of,
+                          const AveragedSprings& at) {
+  const double shear = at.shear_modulus / of.shear_modulus, bulk = bulk_modulus(at) - shear * bulk_modulus(of);
+  MeasuredCells law;
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    const CellShape shape = cells.shape(c);
+    DeformationForm M = shear * measured.form_of_cell(c);
+    M.topLeftCorner<3, 3>().array() += bulk * shape.volume() / (shape.edge * shape.edge);
+    law.add_form(M);
+  }
+  return law;
+}
+
+}  // namespace springproof

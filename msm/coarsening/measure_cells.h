@@ -1,0 +1,72 @@
+// Measures the cells of a body in a finer lattice of it (numerical coarsening).
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "msm/coarsening/fine_cells.h"
+#include "msm/laws/laws.h"
+
+namespace springproof {
+
+/// What cells are measured in.
+struct MeasuredIn {
+  const CutBody& coarse;  ///< the cells, of one size
+  const FineCells& fine;  ///< of the same body
+  AveragedSprings law;    ///< of both, per unit of Young's modulus; nu <= 0.3: near 1/2 noise times the bulk modulus is
+                          ///< fitted
+  std::vector<std::string> held = {};  ///< names of the patches that supports hold along all axes
+};
+
+/// How cells are measured.
+struct MeasureOptions {
+  int threads = 1;                         ///< that share the cells
+  std::function<bool()> interrupted = {};  ///< asked before each cell by each thread; true: stop
+};
+
+/// The cells of a body as measured.
+struct MeasuredBody {
+  MeasuredCells cells;     ///< of the law that they were measured with
+  int as_today = 0;        ///< cells that keep the form of averaged springs
+  double error = 0;        ///< under a load that was not used: rms displacement off the fine lattice, relative
+  double error_today = 0;  ///< the same of averaged springs in all cells
+};
+
+/// Measures the cells of a body under loads all over it, each by a problem of the cells around it: cells near a support
+/// on the held body, the others on the free one.  Cells that two settings of the fit leave more than a factor of two
+/// apart, and those without enough fine cells, keep averaged springs.
+/// @param in the lattices and their law
+/// @param options threads
+/// @return a form per cell, and how far they are off
+/// @throws std::runtime_error "interrupted", or if a state is not found
+MeasuredBody measure_cells(const MeasuredIn& in, const MeasureOptions& options = {});
+
+/// The fine lattice, on its supports, under a load that cells are not measured by.
+class FineTruth {
+ public:
+  /// @param in the lattices and their law, which must outlive it
+  explicit FineTruth(const MeasuredIn& in);
+  /// How far cells are off it.
+  /// @param of_cells law of the coarse cells
+  /// @return relative rms displacement
+  double error(const ForceLaw& of_cells) const;
+
+ private:
+  const MeasuredIn& in_;
+  Eigen::SparseMatrix<double, Eigen::RowMajor> P_;
+  Eigen::VectorXd volume_;
+  NodalVectors load_, truth_;  ///< of the fine nodes
+};
+
+/// Measured cells in another material: shear moduli in proportion, the bulk modulus on the mean strain as it is there.
+/// @param measured forms of `of`
+/// @param cells of the lattice
+/// @param of what they were measured with
+/// @param at averaged springs of the other material, whose bulk over its shear modulus is not smaller
+/// @return forms of `at`
+MeasuredCells in_material(const MeasuredCells& measured, const CellSet& cells, const AveragedSprings& of,
+                          const AveragedSprings& at);
+
+}  // namespace springproof

@@ -1,0 +1,57 @@
+// Force law: cells whose stiffness was measured in a finer lattice of the same body (msm/coarsening/).
+#pragma once
+
+#include <vector>
+
+#include "msm/algebra/block_matrix.h"
+#include "msm/laws/averaged_springs.h"
+#include "msm/laws/law_traits.h"
+#include "msm/topology/network.h"
+
+namespace springproof {
+
+/// How a cell is deformed, y [m]: its edge l times the strain log U (xx, yy, zz, 2 yz, 2 zx, 2 xy), U the stretch of
+/// the mean deformation gradient F of the part that the body fills; then F^T q, q the patterns of its corners that F
+/// does not see (corner_patterns(), 3 * pattern + axis).
+inline constexpr int deformations_of_cell = 18;
+using DeformationRows = Eigen::Matrix<double, deformations_of_cell, 24>;
+using DeformationForm = Eigen::Matrix<double, deformations_of_cell, deformations_of_cell>;
+
+/// y of small displacements of the corners, 3 * corner + axis.
+DeformationRows deformation_of(const CellShape& cell);
+
+/// The form M of a cell of averaged springs at rest [N/m]: energy y.M y / 2.
+DeformationForm form_of(const AveragedSprings& law, const CellShape& cell);
+
+/// Numbers of a symmetric form: its lower triangle row by row.
+inline constexpr int numbers_of_form = deformations_of_cell * (deformations_of_cell + 1) / 2;
+
+/// Energy y.M y / 2 of each cell, M a symmetric form of its own: Hencky's law where M is form_of() averaged springs.  A
+/// rigid motion has no energy, and none can be negative while the forms are not.
+struct MeasuredCells {
+  /// What solvers, kernels and the time step use of this law.
+  static constexpr LawTraits traits = {"measured cells", Reach::cells, {Capability::cells_of_any_shape}};
+  /// Why it cannot what its traits say; nullptr: it can (law_traits.h).
+  const char* lacks(Capability what) const;
+
+  std::vector<double> form;  ///< numbers_of_form of each cell, M [N/m]
+
+  /// Names the parameters, for springs files (law_traits.h).
+  template <class Fields>
+  void fields(Fields& f) {
+    f.of_cells("form_N_m", form, numbers_of_form);
+  }
+
+  double energy(const Network& network, const NodalVectors& x) const;  ///< [J]; +inf if a cell is inverted
+  void add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const;  ///< f += -dE/dx [N]
+  void add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const;  ///< K += d2E/dx2 [N/m]
+
+  /// M of a cell [N/m].
+  DeformationForm form_of_cell(std::size_t cell) const;
+  /// The next cell's.
+  void add_form(const DeformationForm& M);
+  /// Stiffness of a cell [N/m]; unknown 3 * corner + axis.
+  Eigen::Matrix<double, 24, 24> cell_matrix(const CellSet& cells, std::size_t cell) const;
+};
+
+}  // namespace springproof
