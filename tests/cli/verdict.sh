@@ -74,7 +74,7 @@ if [ -x "$fem" ]; then
   between bar hybmss mean_displacement.y_max.z reference_uncertainty 1e-12 1e-4
   grep -qE "^  bar +ν = 0.3: [0-9.]+ %, [0-9.]+°" "$work/stdout" || fail "bar: does not say how far it is deformed"
   # The same bar in millimetres: the same errors, and values in its units.
-  { echo 'units = "mm"'; sed 's/size_m = .*/size_mm = [800, 100, 100]/; s/_Pa = 1e6/_MPa = 1/; s/about_m = .*/about_mm = [0, 50, 50]/' "$work/bar.toml"; } >"$work/in_mm.toml"
+  { echo 'units = "mm"'; sed 's/size_m = .*/size_mm = [800, 100, 100]/; s/_Pa = 1e6/_MPa = 1/; s/displacement_m/displacement_mm/; s/about_m = .*/about_mm = [0, 50, 50]/' "$work/bar.toml"; } >"$work/in_mm.toml"
   expect 0 in_mm "^  hybmss +42 ± [0-9.]+ % in_mm at ν = 0.3 +42 %"
   for row in "mean_displacement.y_max.z 1e3 mm" "mean_displacement.y_max.y 1e3 mm" "displacement_error 1 1" "volume_change 1 1"; do
     read -r measure times unit <<<"$row"
