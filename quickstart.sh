@@ -45,6 +45,15 @@ step() {
   echo "  done in $((SECONDS - start)) s"
 }
 
+# Why tests did not run: what each of them said, of ctest's own log.
+say_what_did_not_run() {
+  awk 'FNR == NR { if (/\(Skipped\)$/) skipped[$3]; next }
+       / Test: /           { name = $NF; why = "" }
+       /: Skipped$/        { if (why == "" && (getline line) > 0) why = line }
+       /^<end of output>$/ { if (name in skipped) print "  " name ": " (why == "" ? last : why) }
+       { last = $0 }' build/log/test.log build/release/Testing/Temporary/LastTest.log
+}
+
 install_missing() {
   local missing=() package as_root=()
   for package in "${packages[@]}"; do
@@ -77,6 +86,7 @@ if [ "${1:-}" = test ]; then
   build all
   # Without those that take another compiler or many minutes: ctest --test-dir build/release -L long (or recipe, fuzz, hostile)
   step test "running the tests, $(nproc) at a time" ctest --test-dir build/release --output-on-failure -j "$(nproc)" -LE "long|recipe|fuzz|hostile" "$@"
+  say_what_did_not_run
 elif [ "${1:-}" = python ]; then
   build springproof springproof-mesh springproof-fem springproof-python
   PYTHONPATH=build/release/python /usr/bin/python3 -c "import springproof"

@@ -56,6 +56,7 @@ add_custom_command(
   COMMENT "Embedding the report's page and its libraries"
   VERBATIM)
 
+set_source_files_properties(${report_generated} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)  # an edited script compiles no source again
 springproof_sources(report_sources results report)
 add_library(report STATIC ${report_sources} ${report_generated})
 springproof_uses_headers(report headers_with_json)

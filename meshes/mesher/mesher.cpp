@@ -11,7 +11,7 @@
 #include <fstream>
 #include <map>
 #include <mutex>
-#include <ranges>
+#include <span>
 
 #include "meshes/mesher/mesh_cache.h"
 #include "meshes/mesher/mesher_exchange.h"
@@ -132,9 +132,10 @@ fs::path built_in_bodies() { return data_folder("geo", SPRINGPROOF_GEO_DIR); }
 /// @throws InputError at a script that is not built in, where such are not wanted.
 void refuse_own_script(const Body& body, const fs::path& file) {
   if (!std::getenv("SPRINGPROOF_NO_SCRIPTS") || !body.is_script() || is_built_in(file)) return;
+  const std::span other_endings = std::span(body_file_endings()).subspan(1);
   throw InputError(body.where, fmt::format("body.geo: '{}' is a script, which may run any command, and --no-scripts is "
                                            "set (allowed: {} files, and the built-in {})",
-                                           body.geo, fmt::join(body_file_endings() | std::views::drop(1), ", "),
+                                           body.geo, fmt::join(other_endings, ", "),
                                            list_of_bodies(built_in_bodies())));
 }
 

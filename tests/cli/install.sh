@@ -15,6 +15,8 @@ sed -i 's/^geo = .*/geo = "only_here.geo"/' share/springproof/experiments/only_h
 "$springproof" list >listed || fail "springproof list"
 grep -q '^  only_here ' listed || fail "an installed case is not listed"
 grep -q '^  golec_2019/compression ' listed || fail "an installed case has not its name"
+mapfile -t bare < <(grep -E '^  [a-z0-9_]+/' listed | grep -vE '^  [^ ]+ +([0-9]+ (s|min|h) )+ ?[A-Z]')
+[ ${#bare[@]} = 0 ] || fail "cases without a time or without words: ${bare[*]}"
 "$springproof" export only_here --to calculix --out deck.inp >log 2>&1 || fail "no deck of an installed case: $(cat log)"
 [ -s deck.inp ] || fail "the deck is empty"
 

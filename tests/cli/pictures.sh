@@ -35,7 +35,7 @@ out="$work/out & out"   # a folder whose name needs care
 "$program" compare "$work/case one.toml" --out "$out" >"$work/log" 2>&1
 [ -s "$out/report.html" ] || stop "no report"
 expect 2 "apt-get install chromium" env PATH=/nowhere "$program" pictures "$out"
-command -v chromium >/dev/null || { echo "chromium is not installed"; exit 77; }
+command -v chromium >/dev/null || { echo "chromium is not installed (apt-get install chromium)"; exit 77; }
 expect 1 "no picture has 'nothing like it'" "$program" pictures "$out" --only "nothing like it"
 expect 1 "not finished after 0.01 s" "$program" pictures "$out" --time-limit 0.01
 expect 0 "4 pictures in" "$program" pictures "$out" --only shapes

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# What docs/contributing.md says of force laws, of a subcommand and of an export format is all that they take: the laws pass the
-# law suite and are models of springproof.
+# What docs/contributing.md says of force laws, of a subcommand, of an export format and of a section of the report is all that they
+# take: the laws pass the law suite and are models of springproof.
 #   contributing_law.sh BINARY-FOLDER SOURCE-FOLDER JOBS
 # In a copy of msm/, tests/ and comparisons/; of the build, what depends on the list of laws is compiled again.
 . "$(dirname "$0")/../cli/lib.sh"
@@ -14,13 +14,13 @@ ln -s "$work/comparisons" views/comparisons/comparisons
 
 # The files of the page, and its lines where it says.
 section() { awk -v heading="## $1" '/^## / { inside = $0 == heading } inside' "$page"; }
-for name in "A force law" "A law of cells with constants of each" "A subcommand"; do
+for name in "A force law" "A law of cells with constants of each" "A section of the report" "A subcommand"; do
   section "$name" | awk '
     match($0, /Save as `(msm|comparisons)[a-z_\/.]+`/) { name = substr($0, RSTART + 9, RLENGTH - 10) }
     /^```/ { if (inside) name = ""; inside = !inside; next }
     inside && name != "" { print > name }'
 done
-for file in msm/laws/{stiffening_springs,graded_volumes}.{h,cpp} comparisons/commands/count_command.{h,cpp}; do
+for file in msm/laws/{stiffening_springs,graded_volumes}.{h,cpp} comparisons/commands/count_command.{h,cpp} comparisons/report/page/counted.js; do
   [ -s "$file" ] || { fail "no $file in $page"; exit 1; }
 done
 # The block of code of a section that has these words.   block SECTION WORDS
@@ -48,6 +48,8 @@ insert_after comparisons/commands/export/export_command.cpp 'constexpr ExportFor
 TEXT=$(block "An export format" 'int export_points') awk '/^\/\/\/ A form of export/ { print ENVIRON["TEXT"] "\n" } { print }' \
   comparisons/commands/export/export_command.cpp >edited
 mv edited comparisons/commands/export/export_command.cpp
+insert_after comparisons/report.cmake 'report/page/fem_column.js' "$(block "A section of the report" 'page/counted.js')"
+insert_after comparisons/report/page/report.js 'const sections = [' "$(block "A section of the report" "id: 'counted'")"
 
 # adapted COMMAND OBJECT: it compiles the sources and headers of this folder.
 adapted() {
@@ -84,6 +86,14 @@ new msm msm/laws/stiffening_springs.cpp
 new msm msm/laws/graded_volumes.cpp
 new comparisons/CMakeFiles/springproof.dir comparisons/commands/count_command.cpp
 
+# The page of the report, of the scripts that comparisons/report.cmake names.
+scripts=$(sed -nE "s#^ +([a-z_]+=)\\$\\{report_dir\\}#\\1$work/comparisons#p" comparisons/report.cmake | paste -sd ';')
+libraries=$(ninja -C "$binary" -t commands comparisons/report_assets.cpp | grep -o 'chart_js=[^"]*')
+cmake "-DASSETS=$scripts;$libraries" -DOUTPUT="$work/report_assets.cpp" -P comparisons/report/embed.cmake || fail "the page is not embedded"
+command=$(ninja -C "$binary" -t commands comparisons/CMakeFiles/report.dir/report_assets.cpp.o | tail -1)
+command=$(sed -E "s# -c [^ ]+# -c $work/report_assets.cpp#" <<<"$command")
+(cd "$binary" && bash -c "$(adapted "$command" "$work/objects/comparisons_report_assets.o")") || fail "the page does not compile"
+
 # The law suite, and springproof.
 link() {  # TARGET OBJECTS...
   local target=$1 command
@@ -116,6 +126,13 @@ same() {  # A NEW MODEL AND AN OLD ONE, AT A POISSON'S RATIO: the same at small 
 }
 same msm_stiffening msm_18 0.25
 same hybmss_graded hybmss 0.4
+
+# The section of the report, drawn where there is a browser.
+grep -q '^function countedSection' out/report.html || fail "the report has no script of the new section"
+if command -v chromium >/dev/null; then
+  timeout 300 chromium --headless --no-sandbox --user-data-dir="$work/profile" --dump-dom "file://$work/out/report.html" >dom 2>log
+  grep -q '<a href="#counted">Counted runs</a>' dom && grep -q '<table class="counted">' dom || fail "the new section is not drawn: $(tail -3 log)"
+fi
 
 # The subcommand and the export format.
 bin/springproof --help | grep -q '^ *count ' || fail "the subcommand is not in --help"

@@ -3,7 +3,7 @@
 # Doxygen warns of nothing in them; of headers that programs begin with, every parameter and return value is described.
 . "$(dirname "$0")/../cli/lib.sh"
 cd "$1" || exit 1
-command -v doxygen >/dev/null || { echo "doxygen is not installed"; exit 77; }
+command -v doxygen >/dev/null || { echo "doxygen is not installed (apt-get install doxygen)"; exit 77; }
 
 # Headers that a program begins with: all functions of a task on the first page of the reference.
 begin="msm/models.h msm/parameters/model_table.h msm/laws/laws.h msm/topology/network.h msm/embedding/boundary.h

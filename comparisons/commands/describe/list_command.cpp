@@ -5,7 +5,9 @@
 #include <filesystem>
 #include <utility>
 
+#include "comparisons/run/expected_runs.h"
 #include "comparisons/sweep/find_cases.h"
+#include "comparisons/sweep/status.h"
 #include "msm/parameters/made_of.h"
 #include "msm/parameters/model_table.h"
 #include "problem/case_file/experiment.h"
@@ -35,6 +37,17 @@ constexpr std::pair<const char*, const char*> folders[] = {
 /// "golec_2019" of "golec_2019/tables/table2"
 std::string folder_of(const std::string& name) { return name.substr(0, name.find('/')); }
 
+/// About how long a comparison takes, two parts at once: "40 s".
+std::string time_of(const Experiment& e) {
+  double sum = 0, longest = 0;
+  for (const IsotropicMaterial& material : e.materials) {
+    const double part = unmeshed_seconds(e, material);
+    sum += part;
+    longest = std::max(longest, part);
+  }
+  return time_words(std::max({1.0, longest, sum / 2}));
+}
+
 void list_cases(const Files& files) {
   std::string folder;
   for (const auto& file : files) {
@@ -45,7 +58,8 @@ void list_cases(const Files& files) {
           std::find_if(std::begin(folders), std::end(folders), [&](const auto& f) { return f.first == folder; });
       to_stdout("{}/{}{}\n", folder, row == std::end(folders) ? "" : "  ", row == std::end(folders) ? "" : row->second);
     }
-    to_stdout("  {:<38} {}\n", name, read_experiment(file).what);
+    const Experiment e = read_experiment(file);
+    to_stdout("  {:<46} {:>7}  {}\n", name, time_of(e), e.what);
   }
 }
 
@@ -80,7 +94,7 @@ int ListCommand::run() const {
       "Begin here: springproof compare golec_2019/compression    (a cube, every model beside finite elements, "
       "seconds)\n"
       "Of your own body: springproof new BODY.stl > case.toml\n\n"
-      "Cases (springproof compare NAME, or FOLDER):\n");
+      "Cases (springproof compare NAME, or FOLDER), and about how long on two cores:\n");
   list_cases(built_in_cases());
   to_stdout("\nModels ([compare] models = [...]):\n");
   list_models();

@@ -290,7 +290,7 @@ function poissonSection(section) {
                  empty, plot.node, volumePlot.node);
   update();
   charts.push(draw);
-  return {show(id) { caseChoice.value = id; update(); },
+  return {show(id) { caseChoice.value = id; update(); }, has: isCompared,
           drawings: result => [...result === cases[0] ? overviewDrawings() : [],
             ...measureChoices([result]).filter(([m]) => !result.minor.has(m)).map(([m]) => allShown(poissonDrawing([result], m, 'finest', true)))]};
 }
@@ -479,5 +479,5 @@ function convergenceSection(section) {
   const middle = chosen().nus.includes(0.25) ? 'nu:0.25' : null;
   if (middle) { lineChoice.value = middle; draw(); }
   charts.push(draw);
-  return {show(id) { caseChoice.value = id; update(); }, drawings: convergenceDrawings};
+  return {show(id) { caseChoice.value = id; update(); }, has: isCompared, drawings: convergenceDrawings};
 }

@@ -182,6 +182,7 @@ const distinct = items => [...new Map(items.map(item => [String(item), item])).v
 
 const allCases = (results.cases || []).map(prepareCase);
 const cases = allCases.filter(result => !result.verifies);
+const isCompared = id => cases.some(result => result.id === id);
 const verifications = allCases.filter(result => result.verifies);   // the reference alone, without models
 const models = orderModels();
 

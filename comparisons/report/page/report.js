@@ -4,7 +4,7 @@
 function build(id, make) {
   const section = document.getElementById(id);
   try {
-    return make(section) || {show() {}, has: () => false};
+    return {show() {}, has: () => false, ...make(section)};
   } catch (error) {
     console.error(error);
     section.append(notice(`This section could not be drawn: ${error.message}`));
@@ -79,38 +79,39 @@ function preparePrinting() {
   });
 }
 
+/// The sections in the order of the page: what builds each, and its words in the contents where they are not the heading.  One
+/// that can `show` a case alone says by `has` which, and is linked from that case's page.
+const sections = [
+  {id: 'cases', heading: 'Cases', make: needsCases(casesSection)},
+  {id: 'shapes', heading: 'Deformed shapes', make: shapesSection},
+  {id: 'motion', heading: 'Motion in time', contents: 'Motion', make: motionSection},
+  {id: 'stability', heading: 'Equilibrium lost', make: stabilitySection},
+  {id: 'poisson', heading: 'Error against Poisson’s ratio', contents: 'Error against ν', make: needsErrors(poissonSection)},
+  {id: 'convergence', heading: 'Convergence', make: needsErrors(convergenceSection)},
+  {id: 'cost', heading: 'Error against cost', make: costSection},
+  {id: 'splits', heading: 'Parts of the error', make: splitsSection},
+  {id: 'line', heading: 'Along the line', make: lineSection},
+  {id: 'cracks', heading: 'Cracks of drying bodies', contents: 'Cracks', make: cracksSection},
+  {id: 'verification', heading: 'Verification of the reference', contents: 'Verification', make: verificationSection},
+  {id: 'fem-column', heading: 'The paper’s finite element column', contents: 'The paper’s finite elements', make: femColumnSection},
+  {id: 'pages', heading: 'Case pages', make: section => pagesSection(section, jumps())},
+  {id: 'about', heading: 'About this report', contents: 'About', make: aboutSection},
+];
+
+/// From a case's page to the sections that show it.
+const jumps = () => sections.filter(({built}) => built)
+  .map(({id, heading, contents, built}) => ({text: contents || heading, go: jumpTo(id, built), has: built.has}));
+
 function start() {
   decorateHead();
   firstScreen();
   Chart.defaults.font.family = 'system-ui, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif';
   Chart.defaults.font.size = 13;
-  build('cases', needsCases(casesSection));
-  const compared = id => cases.some(result => result.id === id);
-  const poisson = build('poisson', needsErrors(poissonSection));
-  const convergence = build('convergence', needsErrors(convergenceSection));
-  const cost = build('cost', costSection);
-  const splits = build('splits', splitsSection);
-  const shapes = build('shapes', shapesSection);
-  const motion = build('motion', motionSection);
-  const line = build('line', lineSection);
-  const cracks = build('cracks', cracksSection);
-  const stability = build('stability', stabilitySection);
-  build('verification', verificationSection);
-  build('fem-column', femColumnSection);
-  build('pages', section => pagesSection(section, [
-    {text: 'Error against ν', go: jumpTo('poisson', poisson), has: compared},
-    {text: 'Convergence', go: jumpTo('convergence', convergence), has: compared},
-    {text: 'Error against cost', go: jumpTo('cost', cost), has: id => cost.has(id)},
-    {text: 'Parts of the error', go: jumpTo('splits', splits), has: id => splits.has(id)},
-    {text: 'Along the line', go: jumpTo('line', line), has: id => line.has(id)},
-    {text: 'Cracks', go: jumpTo('cracks', cracks), has: id => cracks.has(id)},
-    {text: 'Equilibrium lost', go: jumpTo('stability', stability), has: id => stability.has(id)},
-    {text: 'Motion', go: jumpTo('motion', motion), has: id => motion.has(id)},
-    {text: 'Deformed shapes', go: jumpTo('shapes', shapes), has: id => shapes.has(id)},
-  ]));
-  build('about', aboutSection);
+  document.getElementById('contents').prepend(...sections.map(({id, heading, contents}) => el('a', {href: '#' + id}, contents || heading)));
+  document.querySelector('main').append(...sections.map(({id, heading}) => el('section', {id}, el('h2', {}, heading))));
+  for (const section of sections) section.built = build(section.id, section.make);
   const wanted = /^#png=(\d+)(?:&only=(.*))?$/.exec(location.hash);
-  if (wanted) return writePictures(allCases[Number(wanted[1])], [shapes, poisson, convergence, cost, splits, motion, line, cracks, stability], decodeURIComponent(wanted[2] || ''));
+  if (wanted) return writePictures(allCases[Number(wanted[1])], sections.map(({built}) => built), decodeURIComponent(wanted[2] || ''));
   preparePrinting();
   window.addEventListener('hashchange', followHash);
   window.matchMedia('(prefers-color-scheme: dark)').addEventListener('change', redraw);

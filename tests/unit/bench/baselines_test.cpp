@@ -43,7 +43,7 @@ TEST(PlainLoop, MovesAsTheForcesSay) {
 }
 
 TEST(Lammps, HasOurForces) {
-  if (!Lammps::available()) GTEST_SKIP() << "no lmp";
+  if (!Lammps::available()) GTEST_SKIP() << "lmp is not installed (apt-get install lammps)";
   for (const MassSpringModel& model : {lattice("hybmss_cf", {4, 3, 5}, 0.25), random_springs(300)}) {
     const NodalVectors ours = forces({model.network, {Springs{}}, false}, moved(model.network));
     EXPECT_LT((Lammps(model.network).forces() - ours).cwiseAbs().maxCoeff(), 1e-10 * ours.cwiseAbs().maxCoeff());
@@ -51,7 +51,7 @@ TEST(Lammps, HasOurForces) {
 }
 
 TEST(Lammps, TakesLongerForMoreSprings) {
-  if (!Lammps::available()) GTEST_SKIP() << "no lmp";
+  if (!Lammps::available()) GTEST_SKIP() << "lmp is not installed (apt-get install lammps)";
   const auto seconds = [](int n) {
     return Lammps(lattice("hybmss_cf", {n, n, n}, 0.25).network).seconds_per_step(0.2, 3);
   };

@@ -57,7 +57,7 @@ TEST(CalculixDat, MissesNodes) {
 class Calculix : public testing::Test {
  protected:
   void SetUp() override {
-    if (calculix::program().empty()) GTEST_SKIP() << "ccx is not installed";
+    if (calculix::program().empty()) GTEST_SKIP() << "ccx is not installed (apt-get install calculix-ccx)";
   }
 
   Experiment bar(const std::string& law, double stretch) {

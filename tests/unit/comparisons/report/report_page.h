@@ -64,7 +64,7 @@ class Report : public testing::Test {
 class ReportInBrowser : public Report {
  protected:
   void SetUp() override {
-    if (std::system("command -v chromium > /dev/null 2>&1") != 0) GTEST_SKIP() << "chromium is not installed";
+    if (std::system("command -v chromium > /dev/null 2>&1") != 0) GTEST_SKIP() << "chromium is not installed (apt-get install chromium)";
   }
   void TearDown() override {
     std::filesystem::remove_all(profile);
