@@ -49,6 +49,7 @@ constexpr Key body_keys[] = {
   {"voxel_edge_m", "edge of such cells",                         "a finite number > 0, or a list of such",           "one of the three", "[0.01, 0.005]"},
   {"cut",          "with voxels; false: whole cubes whose centres lie in the body", a_flag,                          "true, for models that take cut cells", "false"},
   {"accuracy",     "with one voxels or voxel_edge_m: cells are halved until this error is promised", "a number from 0.001 to 0.5, or a list of such", "cells of one size", "0.05"},
+  {"coarsened",    "with voxels; true: cut cells are measured in a lattice three times as fine", a_flag, "false", "true"},
 };
 
 constexpr Key patch_keys[] = {
