@@ -193,6 +193,11 @@ EmbeddedModel build_cut(const ModelParameters& p, const CutBody& body, const std
   if (!has_cut_cells(p.row))
     throw InputError(fmt::format(
         "{}: cannot be made of cut cells (allowed: lattices of cells without momentum dispersion)", p.row.name));
+  if (p.coarsened.value_or(false))
+    throw InputError(
+        fmt::format("{}: coarsened: measured cells are those of a case (allowed: springproof compare and "
+                    "frequencies; else coarsened = false)",
+                    p.row.name));
   EmbeddedModel built;
   built.model.network = cut_lattice(body, held, material.youngs_modulus);
   built.model.laws = {averaged_law(p, material), Anchors{}};

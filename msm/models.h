@@ -39,7 +39,7 @@ bool has_cut_cells(const ModelRow& row);
 /// @param mesh in the body, at whose nodes results are given
 /// @param material of the body
 /// @return the model and how the mesh hangs in it
-/// @throws InputError unless has_cut_cells(parameters.row).
+/// @throws InputError unless has_cut_cells(parameters.row), and for measured cells (ModelParameters::coarsened).
 EmbeddedModel build_cut(const ModelParameters& parameters, const CutBody& body, const std::vector<std::string>& held,
                         const Mesh& mesh, const IsotropicMaterial& material);
 

@@ -23,6 +23,7 @@ struct Body {
   std::vector<int> voxel_counts = {};    ///< approximate numbers of cubes; empty: no voxels, or their edges are given
   bool cut = true;                       ///< voxels: models that can take cut cells instead of whole cubes
   std::vector<double> accuracies = {};   ///< voxels: promised errors to which cut cells are halved; empty: one size
+  bool coarsened = false;                ///< voxels: cut cells whose stiffness is measured in finer ones
   double scale = 1;                      ///< coordinates of a file are multiplied by it
 
   bool is_script() const;        ///< true for a .geo, whose size is a parameter; false for a file with fixed geometry

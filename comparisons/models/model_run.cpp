@@ -153,7 +153,7 @@ ModelSample measured(const PreparedCase& prepared, const Lattice& lattice, const
       field_measures(prepared, sample.field,
                      cut ? displacement_at(*lattice.cut, sample.state.displacement, measured_points(prepared))
                          : at_measured_points(prepared, lattice, sample.field.displacement));
-  if (cut && asked(e, "promised_error") && !in_motion)
+  if (cut && averaged_springs_of(built.model) && asked(e, "promised_error") && !in_motion)
     sample.scalars["promised_error"] = cell_energies(built.model, sample.state.displacement).promised_error();
   if (asked(e, "network")) add_network(network, sample.scalars);
   if (asked(e, "line")) {

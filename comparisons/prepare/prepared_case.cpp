@@ -74,7 +74,14 @@ EmbeddedModel built_on(const PreparedCase& prepared, const Lattice& lattice, con
   if (passes_patch_test(parameters.row) && lattice.tetrahedra)
     return build_on_tetrahedra(lattice, parameters, material);
   if (!parameters.cut.value_or(false)) return build_embedded(parameters, *lattice.mesh, material, lattice.region.get());
-  return build_cut(parameters, *lattice.cut, {held.begin(), held.end()}, *lattice.mesh, material);
+  ModelParameters averaged = parameters;
+  averaged.coarsened = false;
+  EmbeddedModel built = build_cut(averaged, *lattice.cut, {held.begin(), held.end()}, *lattice.mesh, material);
+  if (!parameters.coarsened.value_or(false)) return built;
+  erase_laws<AveragedSprings>(built.model);
+  built.model.laws.emplace_back(lattice.measured->law(parameters, material));
+  built.model.small_displacements_only = true;
+  return built;
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "comparisons/judge/patch_mean.h"
+#include "comparisons/prepare/measured_lattice.h"
 #include "comparisons/results/records.h"
 #include "meshes/mesh.h"
 #include "msm/embedding/cut_lattice.h"
@@ -40,9 +41,10 @@ struct Lattice {
   std::shared_ptr<const Mesh> tetrahedra = {};  ///< for a body of voxels, with edges as long as the cubes', if
                                                 ///< elements or networks on them are compared, else empty
   std::shared_ptr<FittedNetworks> fits = std::make_shared<FittedNetworks>();  ///< on the vertices of `tetrahedra`
-  std::shared_ptr<const CutBody> cut = {};  ///< of a body of voxels, if a model takes cut cells, else empty
-  double promised = 0;                      ///< error of a refined lattice; 0: its cells are of one size
-  Eigen::Index first_node = 0;              ///< first row of its nodes in fem::Solution::displacement
+  std::shared_ptr<const CutBody> cut = {};         ///< of a body of voxels, if a model takes cut cells, else empty
+  std::shared_ptr<MeasuredLattice> measured = {};  ///< of cut cells, if a model takes measured ones, else empty
+  double promised = 0;                             ///< error of a refined lattice; 0: its cells are of one size
+  Eigen::Index first_node = 0;                     ///< first row of its nodes in fem::Solution::displacement
 
   /// What errors of cut cells are proportional to: the edge of the cells, or the promised error of those of several
   /// sizes.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <set>
 #include <span>
 
 #include "comparisons/judge/measures.h"
@@ -185,6 +186,46 @@ std::string refinement_note(const RefinedBody& refined, double accuracy) {
       refined.reached ? "" : ", which smaller cells than these would take");
 }
 
+/// How far measured cells are off.
+/// @throws std::invalid_argument where averaged springs are as good.
+std::string measured_note(const Lattice& lattice, const MeasuredBody& measured) {
+  constexpr double worth = 0.7;  // of the error of averaged springs
+  const std::string says = fmt::format(
+      "{} cells measured in cells of a third of their edge: under a load that they were not measured by they "
+      "are {:.2g} % off these, averaged springs {:.2g} %",
+      lattice.cut->cells.size(), 100 * measured.error, 100 * measured.error_today);
+  if (measured.error > worth * measured.error_today)
+    throw std::invalid_argument("coarsened: " + says +
+                                ", which is not worth it; take smaller cells, or averaged springs");
+  return measured.as_today == 0 ? says : fmt::format("{}; {} keep averaged springs", says, measured.as_today);
+}
+
+/// Measures the cells of a lattice for all models and materials that need it, and notes how far they are off.
+/// @throws std::invalid_argument where averaged springs are as good.
+void measure_lattice(PreparedCase& prepared, Lattice& lattice) {
+  constexpr std::size_t most_cells = 10000;  // beyond, a finer lattice takes less time than measuring
+  if (lattice.cut->cells.size() > most_cells)
+    throw std::invalid_argument(fmt::format(
+        "coarsened: {} cells take longer to measure than a finer lattice to solve (allowed: up to {}); take larger "
+        "cells, or averaged springs",
+        lattice.cut->cells.size(), most_cells));
+  std::set<std::string> held;  // along all axes; what a support leaves free is measured free
+  for (const Load& load : prepared.loads) {
+    if (!prescribes_displacement(load)) continue;
+    const PrescribedValue value = prescribed_displacement(load, Vec3::Zero(), Kinematics::linear);
+    if (value[0] && value[1] && value[2]) held.insert(*patch_of(load));
+  }
+  lattice.measured = std::make_shared<MeasuredLattice>(lattice.cut, prepared.body.tetrahedra.back(),
+                                                       std::vector<std::string>(held.begin(), held.end()));
+  std::set<const MeasuredBody*> noted;
+  for (const ModelParameters& p : prepared.models)
+    for (const IsotropicMaterial& material : prepared.experiment.materials) {
+      if (!p.coarsened.value_or(false)) continue;
+      const MeasuredBody& measured = lattice.measured->measured(p, material);
+      if (noted.insert(&measured).second) prepared.body.notes.push_back(measured_note(lattice, measured));
+    }
+}
+
 void cut_lattices(PreparedCase& prepared) {
   const Mesh& true_body = *prepared.body.tetrahedra.back();
   const auto region = std::make_shared<Region>(region_of(true_body));
@@ -221,6 +262,9 @@ void cut_lattices(PreparedCase& prepared) {
     prepared.body.notes.push_back(cut_cells_note(prepared, cut));
     prepared.body.notes.insert(prepared.body.notes.end(), cut.notes.begin(), cut.notes.end());
     prepared.lattices.back().cut = std::make_shared<CutBody>(std::move(cut));
+    const auto is_measured = [](const ModelParameters& p) { return p.coarsened.value_or(false); };
+    if (std::any_of(prepared.models.begin(), prepared.models.end(), is_measured))
+      measure_lattice(prepared, prepared.lattices.back());
   }
 }
 

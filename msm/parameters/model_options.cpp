@@ -179,6 +179,9 @@ std::vector<Option> options_of(const ModelRow& row) {
   if (row.topology == Topology::cells && row.extension != Extension::momentum_dispersion) {
     options.push_back(of_body(flag("cut", "cut cells of a body of voxels, or whole cubes (default: as the body says)",
                                    [](bool on, ModelParameters& p) { p.cut = on; })));
+    options.push_back(of_body(
+        flag("coarsened", "cut cells whose stiffness is measured in a finer lattice (default: as the body says)",
+             [](bool on, ModelParameters& p) { p.coarsened = on; })));
     options.push_back(of_body(number("shift",
                                      "averaged springs, cut cells: part of the way from the middle of a cell to the "
                                      "centroid of its filled part, at which the strain is taken (default 0)",

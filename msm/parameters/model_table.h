@@ -100,6 +100,7 @@ struct ModelParameters {
   double turned = 0;                   ///< of node-centred lattices: angle about z [rad] between lattice and axes
   bool hold_rigid_motions = false;     ///< constrains those that the loads leave free, instead of an error
   std::optional<bool> cut;             ///< of cut cells instead of whole cubes; empty: as the body says
+  std::optional<bool> coarsened;       ///< cut cells measured in finer ones (msm/coarsening/); empty: as the body says
   double shift = 0;                    ///< AveragedSprings::shift
   std::optional<StrainCurve> curve;    ///< of averaged springs; empty: Hencky's, in a case that of its material law
   bool slender = false;                ///< torsional stiffness of cells of which a body has two and more across

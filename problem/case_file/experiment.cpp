@@ -100,6 +100,12 @@ Body read_body(const TomlValue& value) {
     if (body.voxel_edges.size() + body.voxel_counts.size() != 1 || !body.cut)
       refuse(*accuracy, "starts from one lattice of cut cells", "one voxels or voxel_edge_m, and not cut = false");
   }
+  if (const auto coarsened = table.find("coarsened")) {
+    if (cells || !body.cut) refuse(*coarsened, "measures cut cells", "voxels or voxel_edge_m, and not cut = false");
+    if (!body.accuracies.empty())
+      refuse(*coarsened, "measures cells of one size, accuracy makes several", "one of coarsened and accuracy");
+    body.coarsened = as_flag(*coarsened);
+  }
   if (cells && !script) refuse(*cells, "is for bodies of hexahedra", "voxels or voxel_edge_m");
   return body;
 }

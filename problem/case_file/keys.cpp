@@ -49,6 +49,7 @@ constexpr Key body_keys[] = {
   {"voxel_edge_m", "edge of such cells",                         "a finite number > 0, or a list of such",           "one of the three", "[0.01, 0.005]"},
   {"cut",          "with voxels; false: whole cubes whose centres lie in the body", a_flag,                          "true, for models that take cut cells", "false"},
   {"accuracy",     "with one voxels or voxel_edge_m: cells are halved until this error is promised", "a number from 0.001 to 0.5, or a list of such", "cells of one size", "0.05"},
+  {"coarsened",    "with voxels; true: cut cells are measured in a lattice three times as fine", a_flag, "false", "true"},
 };
 
 constexpr Key patch_keys[] = {
@@ -382,7 +383,8 @@ std::string keys_page() {
       "\n## Units\n\nUnder `units = \"mm\"` keys end as below; files of bodies (but STEP, which states its unit) "
       "and of `[[external]]` are in mm, values of `[[expect]]`, `[[published]]`, results and report in mm, N, MPa "
       "and t. Springs files, VTU, glTF and notes stay in SI.\n\n"
-      "| `units` | in place of `_m` | `_Pa` | `_kg_m3` | `_kg` | `_m_s2` | `_m_s` |\n|---|---|---|---|---|---|---|\n| `\"mm\"` |";
+      "| `units` | in place of `_m` | `_Pa` | `_kg_m3` | `_kg` | `_m_s2` | `_m_s` |\n|---|---|---|---|---|---|---|\n| "
+      "`\"mm\"` |";
   for (const char* ending : {"_m", "_Pa", "_kg_m3", "_kg", "_m_s2", "_m_s"})
     page += fmt::format(" `{}` |", key_in(Units::mm, ending).name);
   return page + "\n";

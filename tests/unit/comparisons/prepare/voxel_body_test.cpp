@@ -329,6 +329,10 @@ const Mistake mistakes[] = {
     {"not_held", "displacement_m = [0, 0, 0]", "displacement_m = [\"free\", \"free\", 0]", "ball.toml:*not held"},
     {"cut_is_no_flag", "voxels = 100", "voxels = 100\ncut = 3", "ball.toml:*body.cut"},
     {"cut_of_emsm", "\"emsm_random\"", "{ model = \"emsm\", cut = true }", "ball.toml:*unknown option 'cut'"},
+    {"measured_whole_cubes", "\"emsm_random\"", "{ model = \"hybmss_avg\", cut = false, coarsened = true }",
+     "ball.toml:*hybmss_avg: coarsened = true: its cells are not cut (allowed: cut cells of one size"},
+    {"measured_with_a_shift", "\"emsm_random\"", "{ model = \"hybmss_avg\", shift = 0.4, coarsened = true }",
+     "ball.toml:*hybmss_avg: coarsened = true: shift is for averaged springs"},
     {"shift_too_large", "\"emsm_random\"", "{ model = \"hybmss\", shift = 2 }", "ball.toml:*0 <= shift <= 1"},
     {"edge_too_long", "edge_m = 0.03", "edge_m = -3", "ball.toml:*edge_m"},
 };

@@ -48,6 +48,11 @@ TEST(VoxelBody, AnAccuracyMakesOneLatticeEach) {
   EXPECT_NE(std::find(e.measures.begin(), e.measures.end(), "promised_error"), e.measures.end());
 }
 
+TEST(VoxelBody, MayHaveMeasuredCells) {
+  EXPECT_FALSE(body_of("geo = \"a.stl\"\nvoxels = 300").coarsened);
+  EXPECT_TRUE(body_of("geo = \"a.stl\"\nvoxels = [300, 900]\ncoarsened = true").coarsened);
+}
+
 TEST(VoxelBody, ItsReferenceIsOfQuadraticTetrahedra) {
   const std::string body = "geo = \"a.stl\"\nvoxels = 500";
   EXPECT_EQ(parse_experiment(case_with(body), "case.toml").reference.elements, (std::vector<std::string>{"p2"}));
@@ -74,6 +79,12 @@ TEST(VoxelBody, MistakesAreRefused) {
         Mistake{"geo = \"a.stl\"\nvoxels = 5\naccuracy = 0", "body.accuracy"},
         Mistake{"geo = \"a.stl\"\nvoxels = [5, 9]\naccuracy = 0.1", "starts from one lattice of cut cells"},
         Mistake{"geo = \"a.stl\"\nvoxels = 5\ncut = false\naccuracy = 0.1", "starts from one lattice of cut cells"},
+        Mistake{"geo = \"a.stl\"\nvoxels = 5\ncut = false\ncoarsened = true",
+                "body.coarsened: measures cut cells (allowed"},
+        Mistake{"geo = \"block.geo\"\nsize_m = [1, 1, 1]\ncells = [1, 1, 1]\ncoarsened = true", "measures cut cells"},
+        Mistake{"geo = \"a.stl\"\nvoxels = 5\naccuracy = 0.1\ncoarsened = true",
+                "measures cells of one size, accuracy"},
+        Mistake{"geo = \"a.stl\"\nvoxels = 5\ncoarsened = 1", "body.coarsened"},
         Mistake{"geo = \"a.stl\"\ncells = [2, 2, 2]", "is for bodies of hexahedra"}}) {
     const std::string message = message_of(case_with(m.body));
     EXPECT_NE(message.find(m.says), std::string::npos) << m.body << "\n" << message;

@@ -31,6 +31,7 @@ Values beside(const std::string& table, const std::string& key) {
       {"body.voxel_edge_m", {{"cells", ""}}},
       {"body.cut", voxels},
       {"body.accuracy", voxels},
+      {"body.coarsened", voxels},
       {"material.shear_modulus_Pa", no_young},
       {"material.bulk_modulus_Pa", no_young},
       {"material.lame_lambda_Pa", no_young},
