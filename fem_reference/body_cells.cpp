@@ -22,8 +22,10 @@ CellLaw law_of(const GridProblem& problem, const Body3& body) {
   const std::optional<Law> law = law_named(problem.law);
   if (!law && problem.law != "linear")
     throw InputError(fmt::format("unknown law \"{}\"; there are: linear, {}", problem.law, law_names()));
-  return {law, form_for({body.has_tetrahedra(), problem.degree}, problem.material.poisson_ratio, !law),
-          shear_modulus(problem.material), lame_lambda(problem.material)};
+  CellLaw cells{law, form_for({body.has_tetrahedra(), problem.degree}, problem.material.poisson_ratio, !law),
+                shear_modulus(problem.material), lame_lambda(problem.material)};
+  cells.pointwise = pointwise_part(body.has_tetrahedra(), cells);
+  return cells;
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include <ctime>
 
+#include "fem_reference/elements/cell_equations.h"
 #include "fem_reference/grid/processes.h"
 #include "fem_reference/grid/triangulate.h"
 #include "fem_reference/motion.h"
@@ -94,11 +95,6 @@ bool matrix_free_tetrahedra(const GridProblem& problem, const Body3& body) {
          problem.method == Method::automatic && process_count() == 1;
 }
 
-// Continuous pressures leave the dilatation at single points free: at the rim of a support det F falls to a twentieth,
-// and laws lose their ellipticity there.  At large strain they stand for what lambda exceeds its value at nu = 0.4 by,
-// up to which quadratic tetrahedra take none.
-constexpr double pointwise_over_mu = 4;
-
 std::string element_name(const ElasticSystem& system) {
   return describe({system.body.has_tetrahedra(), system.degree}, system.form);
 }
@@ -128,8 +124,8 @@ struct Discrete {
     held.erase(std::remove_if(held.begin(), held.end(), [&](const auto& p) { return !owned.is_element(p.dof); }),
                held.end());
     check_held(held, dof_handler.get_communicator());
-    if (body.has_tetrahedra() && problem.law != "linear" && system.form == Form::mixed)
-      system.pointwise = pointwise_over_mu * system.mu;
+    system.pointwise =
+        pointwise_part(body.has_tetrahedra(), {law_named(problem.law), system.form, system.mu, system.lambda});
     if (matrix_free_tetrahedra(problem, body)) add_linear_coarse_space(problem.coarse, problem.place, system);
     if (!dof_handler.has_level_dofs()) return;
     system.level_constrained = prescribed_on_levels(dof_handler, body, problem.loads);

@@ -158,6 +158,11 @@ void add_stress_stiffness(const CellShape& shape, const std::vector<Matrix3d>& S
 
 }  // namespace
 
+double pointwise_part(bool tetrahedra, const CellLaw& law) {
+  constexpr double over_mu = 4;
+  return tetrahedra && law.law && law.form == Form::mixed ? over_mu * law.mu : 0;
+}
+
 CellVector cell_residual(const CellLaw& law, const CellShape& shape, const CellVector& x, double& smallest,
                          CellTangent* tangent) {
   const int n = shape.nodes(), points = shape.points(), np = int(shape.pressures.cols());
@@ -231,14 +236,14 @@ CellVector step_residual(const CellLaw& law, const CellShape& shape, const CellV
   PointTensors stress(3 * points, 3);
   for (int q = 0; q < points; ++q) {
     const double w = shape.weights[q];
-    double p = (first.p[q] + last.p[q]) / 2;
-    if (law.form == Form::mixed)
+    double p = mean_over(first.g[q], last.g[q], [&](double at) { return pressure_of(law, at).value; });
+    if (law.form == Form::mixed) {
+      p += (first.unknown[q] + last.unknown[q]) / 2;
       r.p += w *
              ((first.g[q] + last.g[q]) / 2 -
               mean_over(first.unknown[q], last.unknown[q], [&](double at) { return dilatation_of(law, at).value; })) *
              shape.pressures.row(q).transpose();
-    else
-      p = mean_over(first.g[q], last.g[q], [&](double at) { return pressure_of(law, at).value; });
+    }
     const Matrix3d F0 = Matrix3d::Identity() + first.h[q], F1 = Matrix3d::Identity() + last.h[q];
     const Vector6 S = mean_over(Matrix3d(F0.transpose() * F0), Matrix3d(F1.transpose() * F1), [&](const Matrix3d& C) {
       const Matrix3d U = C.llt().matrixU();  // any F with F^T F = C
@@ -254,10 +259,14 @@ double cell_energy(const CellLaw& law, const CellShape& shape, const CellVector&
   const PointStates s = states(law, shape, x);
   double sum = 0;
   for (int q = 0; q < shape.points(); ++q) {
-    const double g = law.form == Form::mixed ? dilatation_of(law, s.unknown[q]).value : s.g[q];
-    const Matrix3 F = to_array(Matrix3d::Identity() + s.h[q]);
-    sum += shape.weights[q] *
-           (shear_energy(*law.law, law.mu, F) + dilatation_energy(*law.law, law.lambda, g) + s.p[q] * (s.g[q] - g));
+    const bool mixed = law.form == Form::mixed;
+    double energy = shear_energy(*law.law, law.mu, to_array(Matrix3d::Identity() + s.h[q])) +
+                    dilatation_energy(*law.law, mixed ? law.pointwise : law.lambda, s.g[q]);
+    if (mixed) {
+      const double g = dilatation_of(law, s.unknown[q]).value;
+      energy += dilatation_energy(*law.law, law.lambda - law.pointwise, g) + s.unknown[q] * (s.g[q] - g);
+    }
+    sum += shape.weights[q] * energy;
   }
   return sum;
 }
@@ -281,13 +290,12 @@ void add_viscosity(const CellLaw& law, const CellShape& shape, const Eigen::Matr
   }
   const auto weights = shape.weights.asDiagonal();
   const double scale = 1 + viscosity * per_rate;
-  if (law.form == Form::mixed) {
+  const double lambda = law.form == Form::mixed ? law.pointwise : law.lambda;
+  if (law.form == Form::mixed)
     residual.p = (residual.p + viscosity * shape.pressures.transpose() * (weights * dilatation)) / scale;
-  } else {
-    if (law.form == Form::mean_dilatation) dilatation.setConstant(dilatation.dot(shape.weights) / shape.weights.sum());
-    for (int q = 0; q < points; ++q)
-      stress.middleRows<3>(3 * q) += viscosity * law.lambda * dilatation[q] * shape.weights[q] * inverse[q];
-  }
+  if (law.form == Form::mean_dilatation) dilatation.setConstant(dilatation.dot(shape.weights) / shape.weights.sum());
+  for (int q = 0; q < points; ++q)
+    stress.middleRows<3>(3 * q) += viscosity * lambda * dilatation[q] * shape.weights[q] * inverse[q];
   add_forces(shape, stress, residual.u);
   if (!tangent) return;
 
@@ -302,13 +310,10 @@ void add_viscosity(const CellLaw& law, const CellShape& shape, const Eigen::Matr
     traces.row(q) = Eigen::Map<const Eigen::VectorXd>(turned.data(), 3 * n).transpose();
   }
   tangent->uu += viscosity * per_rate * (B.transpose() * DB);
-  if (law.form == Form::mixed) {
-    tangent->pp /= scale;
-    return;
-  }
+  if (law.form == Form::mixed) tangent->pp /= scale;
   if (law.form == Form::mean_dilatation)
     traces = (Eigen::VectorXd::Ones(points) * (shape.weights.transpose() * traces / shape.weights.sum())).eval();
-  tangent->uu += viscosity * per_rate * law.lambda * (traces.transpose() * (weights * traces));
+  tangent->uu += viscosity * per_rate * lambda * (traces.transpose() * (weights * traces));
 }
 
 CellMatrix cell_stiffness(const CellLaw& law, const CellShape& shape, const Eigen::MatrixXd* u) {

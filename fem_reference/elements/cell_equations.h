@@ -39,6 +39,11 @@ struct CellLaw {
   double pointwise = 0;  ///< part of lambda that the mixed form leaves to the dilatation at each point, at rest [Pa]
 };
 
+/// CellLaw::pointwise of a body.  Continuous pressures of tetrahedra leave the dilatation at single points free: at the
+/// rim of a support det F falls to a twentieth, and laws lose their ellipticity there.  At large strain they stand for
+/// what lambda exceeds its value at nu = 0.4 by, up to which quadratic tetrahedra take none.
+double pointwise_part(bool tetrahedra, const CellLaw& law);
+
 /// Lowers `smallest` to min det F over the quadrature points; the residual is valid only if that is positive.
 /// `tangent` may be null.
 CellVector cell_residual(const CellLaw& law, const CellShape& shape, const CellVector& x, double& smallest,
