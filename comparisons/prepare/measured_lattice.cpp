@@ -61,7 +61,8 @@ std::string line_of(const CutBody& coarse, const Mesh& body, const std::vector<s
 const KeptKind kept_cells = {"cells", ".bin", "springproof measured cells 1 "};
 
 std::string content_of(const MeasuredBody& measured) {
-  const std::array<double, 3> head = {static_cast<double>(measured.as_today), measured.error, measured.error_today};
+  const std::array<double, 3> head = {static_cast<double>(measured.as_averaged), measured.error,
+                                      measured.error_of_averaged};
   return bytes_of(head) + bytes_of(measured.cells.form);
 }
 

@@ -193,11 +193,11 @@ std::string measured_note(const Lattice& lattice, const MeasuredBody& measured) 
   const std::string says = fmt::format(
       "{} cells measured in cells of a third of their edge: under a load that they were not measured by they "
       "are {:.2g} % off these, averaged springs {:.2g} %",
-      lattice.cut->cells.size(), 100 * measured.error, 100 * measured.error_today);
-  if (measured.error > worth * measured.error_today)
+      lattice.cut->cells.size(), 100 * measured.error, 100 * measured.error_of_averaged);
+  if (measured.error > worth * measured.error_of_averaged)
     throw std::invalid_argument("coarsened: " + says +
                                 ", which is not worth it; take smaller cells, or averaged springs");
-  return measured.as_today == 0 ? says : fmt::format("{}; {} keep averaged springs", says, measured.as_today);
+  return measured.as_averaged == 0 ? says : fmt::format("{}; {} keep averaged springs", says, measured.as_averaged);
 }
 
 /// Measures the cells of a lattice for all models and materials that need it, and notes how far they are off.

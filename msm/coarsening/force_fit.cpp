@@ -12,9 +12,9 @@ namespace {
 constexpr int strains = 6;
 constexpr double least_scalar = 0.05, largest_scalar = 5;
 
-/// L of a metric.  Strains and patterns are apart in today's form, and so in L.
-Eigen::MatrixXd scaled_root(const DeformationForm& today, const Eigen::MatrixXd& y, const Eigen::MatrixXd& s) {
-  Eigen::MatrixXd L = Eigen::MatrixXd(today.llt().matrixL());
+/// L of a metric.  Strains and patterns are apart in the form of averaged springs, and so in L.
+Eigen::MatrixXd scaled_root(const DeformationForm& averaged, const Eigen::MatrixXd& y, const Eigen::MatrixXd& s) {
+  Eigen::MatrixXd L = Eigen::MatrixXd(averaged.llt().matrixL());
   const Eigen::MatrixXd z = L.transpose() * y, t = L.triangularView<Eigen::Lower>().solve(s);
   for (const auto& [first, count] : {std::pair(0, strains), std::pair(strains, deformations_of_cell - strains)}) {
     const auto own = z.middleRows(first, count);
@@ -27,13 +27,14 @@ Eigen::MatrixXd scaled_root(const DeformationForm& today, const Eigen::MatrixXd&
 
 }  // namespace
 
-DeformationForm fit_form(const DeformationForm& today, const Eigen::MatrixXd& y, const Eigen::MatrixXd& s,
+DeformationForm fit_form(const DeformationForm& averaged, const Eigen::MatrixXd& y, const Eigen::MatrixXd& s,
                          const FitSettings& settings) {
-  const Eigen::MatrixXd L = settings.of_scalars ? scaled_root(today, y, s) : Eigen::MatrixXd(today.llt().matrixL());
+  const Eigen::MatrixXd L =
+      settings.of_scalars ? scaled_root(averaged, y, s) : Eigen::MatrixXd(averaged.llt().matrixL());
   const Eigen::MatrixXd z = L.transpose() * y, t = L.triangularView<Eigen::Lower>().solve(s);
   Eigen::MatrixXd A = z * z.transpose(), N = t * z.transpose();
   const double rho = settings.ridge * A.trace() / deformations_of_cell;
-  if (!(rho > 0)) return today;
+  if (!(rho > 0)) return averaged;
   A.diagonal().array() += rho;
   N.diagonal().array() += rho;
   const Eigenpairs of_A = symmetric_eigenpairs(A);  // C A + A C = N + N^T

@@ -25,9 +25,9 @@ struct CellStates {
 /// The states of some cells under loads all over the body, from those of averaged springs, scaled to unit work.
 class StatesOfCells {
  public:
-  StatesOfCells(const CellPatches& patches, const MassSpringModel& today) : patches_(patches) {
-    const Eigen::MatrixXd loads = loads_all_over(today.network, 0);
-    states_ = displacements_under(today, loads);
+  StatesOfCells(const CellPatches& patches, const MassSpringModel& averaged) : patches_(patches) {
+    const Eigen::MatrixXd loads = loads_all_over(averaged.network, 0);
+    states_ = displacements_under(averaged, loads);
     for (Eigen::Index i = 0; i < states_.cols(); ++i) states_.col(i) /= std::sqrt(states_.col(i).dot(loads.col(i)));
   }
 
@@ -62,15 +62,15 @@ class StatesOfCells {
 double energy(const DeformationForm& M, const Eigen::MatrixXd& y) { return y.cwiseProduct(M * y).sum(); }
 
 /// Of averaged springs unless the states determine it.
-DeformationForm measured_form(const DeformationForm& today, const CellStates& states, int& as_today) {
+DeformationForm measured_form(const DeformationForm& averaged, const CellStates& states, int& as_averaged) {
   if (states.y.size() > 0) {
-    const DeformationForm form = fit_form(today, states.y, states.s),
-                          other = fit_form(today, states.y, states.s, in_metric_of_scalars);
+    const DeformationForm form = fit_form(averaged, states.y, states.s),
+                          other = fit_form(averaged, states.y, states.s, in_metric_of_scalars);
     const double ratio = energy(form, states.y) / energy(other, states.y);
     if (ratio <= most_apart && ratio >= 1 / most_apart) return form;
   }
-  ++as_today;
-  return today;
+  ++as_averaged;
+  return averaged;
 }
 
 double bulk_modulus(const AveragedSprings& law) { return law.lame_lambda + 2 * law.shear_modulus / 3; }
@@ -93,13 +93,14 @@ MeasuredBody measure_cells(const MeasuredIn& in, const MeasureOptions& options) 
     StatesOfCells(patches, held_cells(in.coarse, in.held, in.law)).measure(near_supports, options, states);
   }
   const CellPatches patches(in.coarse, in.fine, in.law);
-  const MassSpringModel today = held_cells(in.coarse, {}, in.law);
-  StatesOfCells(patches, today).measure(free, options, states);
+  const MassSpringModel averaged = held_cells(in.coarse, {}, in.law);
+  StatesOfCells(patches, averaged).measure(free, options, states);
   MeasuredBody measured;
   for (std::size_t c = 0; c < states.size(); ++c)
-    measured.cells.add_form(measured_form(form_of(in.law, today.network.cells.shape(c)), states[c], measured.as_today));
+    measured.cells.add_form(
+        measured_form(form_of(in.law, averaged.network.cells.shape(c)), states[c], measured.as_averaged));
   const FineTruth truth(in);
-  measured.error_today = truth.error(in.law);
+  measured.error_of_averaged = truth.error(in.law);
   measured.error = truth.error(measured.cells);
   return measured;
 }

@@ -28,10 +28,10 @@ struct MeasureOptions {
 
 /// The cells of a body as measured.
 struct MeasuredBody {
-  MeasuredCells cells;     ///< of the law that they were measured with
-  int as_today = 0;        ///< cells that keep the form of averaged springs
-  double error = 0;        ///< under a load that was not used: rms displacement off the fine lattice, relative
-  double error_today = 0;  ///< the same of averaged springs in all cells
+  MeasuredCells cells;           ///< of the law that they were measured with
+  int as_averaged = 0;           ///< cells that keep the form of averaged springs
+  double error = 0;              ///< under a load that was not used: rms displacement off the fine lattice, relative
+  double error_of_averaged = 0;  ///< the same of averaged springs in all cells
 };
 
 /// Measures the cells of a body under loads all over it, each by a problem of the cells around it: cells near a support

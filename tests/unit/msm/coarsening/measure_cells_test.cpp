@@ -44,11 +44,11 @@ const Lattices& bracket() {
   return lattices;
 }
 
-/// 18 x 18, symmetric, with eigenvalues in [low, high] in the metric of `today`.
-DeformationForm random_form(const DeformationForm& today, double low, double high) {
+/// 18 x 18, symmetric, with eigenvalues in [low, high] in the metric of `of_springs`.
+DeformationForm random_form(const DeformationForm& of_springs, double low, double high) {
   const Eigen::MatrixXd A = noise(18, 18, 3);
   const Eigenpairs pairs = symmetric_eigenpairs(A + A.transpose());
-  const Eigen::MatrixXd root = Eigen::MatrixXd(today.llt().matrixL()) * pairs.vectors;
+  const Eigen::MatrixXd root = Eigen::MatrixXd(of_springs.llt().matrixL()) * pairs.vectors;
   return root * Eigen::VectorXd::LinSpaced(18, low, high).asDiagonal() * root.transpose();
 }
 
@@ -77,20 +77,20 @@ TEST(LayeredMatrix, SolvesWhatLayersCouple) {
 }
 
 TEST(ForceFit, FindsTheFormThatStatesHave) {
-  const DeformationForm today = form_of(averaged(0.3), {0.5}), true_form = random_form(today, 0.1, 2.5);
+  const DeformationForm of_springs = form_of(averaged(0.3), {0.5}), true_form = random_form(of_springs, 0.1, 2.5);
   const Eigen::MatrixXd y = noise(18, 40, 5), s = true_form * y;
   const auto misfit = [&](const DeformationForm& M) { return (M * y - s).norm() / s.norm(); };
-  EXPECT_LE(misfit(fit_form(today, y, s, {1e-12, 0.02, 3, false})), 1e-8);
-  EXPECT_LE(misfit(fit_form(today, y, s)), 0.5 * misfit(today));
+  EXPECT_LE(misfit(fit_form(of_springs, y, s, {1e-12, 0.02, 3, false})), 1e-8);
+  EXPECT_LE(misfit(fit_form(of_springs, y, s)), 0.5 * misfit(of_springs));
 }
 
 TEST(ForceFit, KeepsTheFormSymmetricAndItsEigenvaluesInTheirRange) {
-  const DeformationForm today = form_of(averaged(0.3), {0.5});
+  const DeformationForm of_springs = form_of(averaged(0.3), {0.5});
   const Eigen::MatrixXd y = noise(18, 10, 6), s = noise(18, 10, 7);  // no form has these forces
   for (const FitSettings& settings : {FitSettings{}, FitSettings{0.3, 0.3, 4, true}}) {
-    const DeformationForm M = fit_form(today, y, s, settings);
+    const DeformationForm M = fit_form(of_springs, y, s, settings);
     EXPECT_LE((M - M.transpose()).norm(), 1e-12 * M.norm());
-    const Eigen::VectorXd values = symmetric_eigenvalues(M, today);
+    const Eigen::VectorXd values = symmetric_eigenvalues(M, of_springs);
     const double scalars_least = settings.of_scalars ? 0.05 : 1, scalars_largest = settings.of_scalars ? 5 : 1;
     EXPECT_GE(values.minCoeff(), settings.least * scalars_least * (1 - 1e-9));
     EXPECT_LE(values.maxCoeff(), settings.largest * scalars_largest * (1 + 1e-9));
@@ -153,9 +153,9 @@ TEST(LoadsAllOver, HaveNoResultantOnAFreeBody) {
 TEST(MeasuredCells, MoveAThinBodyAsTheFineLatticeDoes) {
   const Lattices& of = bracket();
   const MeasuredBody measured = measure_cells({of.coarse, of.fine, averaged(0.3)}, {.threads = 2});
-  EXPECT_LE(measured.as_today, static_cast<int>(of.coarse.cells.size()) / 10);
-  EXPECT_GE(measured.error_today, 0.15);
-  EXPECT_LE(measured.error, 0.4 * measured.error_today);
+  EXPECT_LE(measured.as_averaged, static_cast<int>(of.coarse.cells.size()) / 10);
+  EXPECT_GE(measured.error_of_averaged, 0.15);
+  EXPECT_LE(measured.error, 0.4 * measured.error_of_averaged);
 }
 
 // Measured as if free, cells at a clamped end are far too soft.
