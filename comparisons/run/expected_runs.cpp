@@ -15,7 +15,7 @@ namespace springproof {
 namespace {
 
 // CPU seconds per unknown, as measured on the shipped cases.
-constexpr double springs = 2.5e-6, springs_of_bodies = 1.2e-5, springs_at_random = 3.5e-5, springs_fitted = 6e-3;
+constexpr double springs = 2.5e-6, springs_of_bodies = 1.2e-5, springs_at_random = 3.5e-5, springs_fitted = 4e-3;
 constexpr double large_strain = 20, near_incompressible = 0.025;  // factors; the second is divided by 1 - 2 nu
 constexpr double spring_step = 2e-8;                              // of a motion, per unknown and step
 constexpr double breaking = 1e-4;                                 // of a sample that dries: hundreds of equilibria
