@@ -246,11 +246,11 @@ constexpr Key measured_keys[] = {
 };
 
 constexpr Key measured_value_keys[] = {
-  {"name",      "its name; its row is measured.NAME",                             "a name",                                    required, "\"sag\""},
+  {"name",      "of its row, measured.NAME",                             "a name",                                    required, "\"sag\""},
   {"quantity",  "what was measured: a name of results.csv",                       "the name of a row",                         required, "\"displacement.tip.z\""},
   {"value",     "in its unit",                                                    "a finite number",                           required, "-0.0108"},
   {"u",         "its standard uncertainty",                                       above_0,                                     required, "3e-4"},
-  {"arm_m",     "of a mean_displacement: from the middle of the patch to the marker, which turns with it", a_vector,       "0",      "[0, 0, 0.007]"},
+  {"arm_m",     "of a mean_displacement: from the middle of the patch to the marker", a_vector,       "0",      "[0, 0, 0.007]"},
   {"load_case", "under which loads",                                              "the name of a [[load_case]]",               "the first", "\"52 g\""},
   {"minus",     "whose value is subtracted",                                      "the name of a [[load_case]]",               "none",   "\"own weight\""},
   {"use",       "fit: an input was fitted to it",                                 "fit, predict",                              "predict", "\"fit\""},
@@ -258,7 +258,7 @@ constexpr Key measured_value_keys[] = {
 
 constexpr Key load_case_keys[] = {
   {"name", "its name",                                          "a name",                                     required,                   "\"own weight\""},
-  {"with", "keys of the case with other values; [] leaves out", "keys of the case with other values",         "none, of the first alone", "{ mass = [] }"},
+  {"with", "what is changed; [] leaves out", "keys of the case with other values",         "none, of the first alone", "{ mass = [] }"},
 };
 
 constexpr Key input_keys[] = {

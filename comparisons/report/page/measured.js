@@ -13,13 +13,13 @@ function measuredChart(values) {
   const errors = {type: 'line', label: 'E ± 2 u_val', data: points, showLine: false, borderColor: '#0072b2', backgroundColor: '#0072b2',
                   pointRadius: 5, pointStyle: points.map(({value}) => isNumber(value.ratio) && value.ratio <= 2 ? 'circle' : 'rectRot'),
                   whiskers: values.map(v => isNumber(v.u_val) ? 2 * Math.abs(ofMeasured(v, v.u_val)) : null)};
-  const reach = Math.max(...points.map((p, i) => Math.abs(p.y) + (errors.whiskers[i] || 0)), 1);
+  const reach = 10 * Math.ceil(Math.max(...points.map((p, i) => Math.abs(p.y) + (errors.whiskers[i] || 0)), 1) / 10);
   const options = baseOptions();
   options.plugins.legend.display = false;
   options.plugins.tooltip = {callbacks: {label: ({raw}) => `E = ${change(raw.value, raw.value.error)} %, |E|/u_val = ${number(raw.value.ratio, 2)}`}};
   options.scales = {
     x: {type: 'category', labels: values.map(v => v.name), offset: true, grid: {display: false}, ticks: {color: ink, autoSkip: false}},
-    y: {min: -1.05 * reach, max: 1.05 * reach, title: {display: true, text: 'E = S − D [% of D]', color: ink},
+    y: {min: -reach, max: reach, title: {display: true, text: 'E = S − D [% of D]', color: ink},
         grid: {color: context => context.tick && context.tick.value === 0 ? ink : grid}, ticks: {color: ink, callback: value => number(value, 3)}},
   };
   return {type: 'line', data: {datasets: [errors]}, options, plugins: [whiskers]};
