@@ -184,7 +184,8 @@ double unmeshed_seconds(const Experiment& e, const IsotropicMaterial& material) 
     unmeshed.experiment = e;
     add_grids_in_time(unmeshed, material, runs);
   }
-  return sum_of(runs.all);
+  const double load_cases = std::max<double>(1, static_cast<double>(e.load_cases.size()));
+  return load_cases * sum_of(runs.all);
 }
 
 }  // namespace springproof

@@ -30,6 +30,7 @@ constexpr std::pair<const char*, const char*> folders[] = {
     {"kot_2014", "those of Kot et al. (2014)"},
     {"kot_2015", "those of Kot and Nagahashi (2015)"},
     {"large_strain", "strains of a fifth and more"},
+    {"measured", "bodies beside what was measured of them"},
     {"motion", "in time: swings, waves, falls"},
     {"verification", "benchmarks with a known solution: Lame, MacNeal and Harder, Cook, fields"},
 };
