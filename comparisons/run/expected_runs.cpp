@@ -8,7 +8,7 @@
 #include "comparisons/reference/reference_grids.h"
 #include "comparisons/reference/voxel_reference.h"
 #include "comparisons/run/prepare.h"
-#include "comparisons/run/varied_runs.h"
+#include "comparisons/run/variations.h"
 #include "meshes/volume.h"
 #include "problem/case_file/external.h"
 
@@ -133,7 +133,17 @@ double unmeshed_unknowns(const Body& body, std::size_t lattice, int degree) {
   return 3 * nodes_per_cube * cubes_of(body, lattice) * (degree == 1 ? 1 : 8);
 }
 
+std::vector<RunCost> expected_variations(const Experiment& e) {
+  std::vector<RunCost> runs;
+  for (const Variation& variation : variations(e)) runs.push_back(cost_of_variation(case_of(e, variation)));
+  return runs;
+}
+
 }  // namespace
+
+RunCost cost_of_variation(const Experiment& e) {
+  return {RunKind::of_variations, unmeshed_seconds(e, e.materials.front())};
+}
 
 RunCost cost_of_model(const PreparedCase& prepared, const Lattice& lattice, std::size_t number,
                       const IsotropicMaterial& material) {

@@ -22,4 +22,7 @@ double sum_of(const std::vector<RunCost>& runs);  ///< [s]
 /// @throws InputError for models that there are not.
 double unmeshed_seconds(const Experiment& experiment, const IsotropicMaterial& material);
 
+/// What the runs of a variation's case (comparisons/run/variations.h) are expected to take together.
+RunCost cost_of_variation(const Experiment& experiment);
+
 }  // namespace springproof

@@ -14,7 +14,4 @@ namespace springproof {
 /// @return none for a case without measured values
 std::vector<VariedRun> varied_runs(const Experiment& experiment, const RunKeeper& keeper);
 
-/// What each of them is expected to take.
-std::vector<RunCost> expected_variations(const Experiment& experiment);
-
 }  // namespace springproof
