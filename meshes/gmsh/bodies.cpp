@@ -365,6 +365,7 @@ MeshedBody mesh_file(const MeshRequest& r) try {
   if (r.scale != 1) scale(body.mesh, r.scale);
   for (Mesh& mesh : body.coarser)
     if (r.scale != 1) scale(mesh, r.scale);
+  for (Vec3& x : body.facets.points) x *= r.scale;
   return body;
 } catch (const std::string& message) {
   refuse(r.file, "gmsh: " + message);

@@ -15,6 +15,7 @@
 #include "meshes/mesher/mesher_exchange.h"
 #include "meshes/volume.h"
 #include "problem/processes/child.h"
+#include "support/surfaces.h"
 #include "support/tolerances.h"
 
 namespace springproof::mesher_test {
@@ -295,6 +296,16 @@ TEST_F(Mesher, StepComesOutInMetresAndNamesItsFaces) {
   EXPECT_NEAR(volume_of(scaled), 6, 1e-6);
 }
 
+TEST_F(Mesher, FacetsOfASurfaceFileComeBackInMetres) {
+  const fs::path file = folder_.path / "ball.stl";
+  const Surface ball = test::sphere(2, 2);
+  test::write_stl_binary(file, ball);
+  const MeshedBody body = mesh_body({.file = file, .edge = 1e-3, .scale = 1e-3});
+  EXPECT_EQ(body.facets.triangles.size(), ball.triangles.size());
+  EXPECT_NEAR(volume(body.facets), 1e-9 * volume(ball), 1e-15);
+  EXPECT_TRUE(mesh_body({.file = saved("box.brep", box_solid), .edge = 0.5}).facets.triangles.empty());
+}
+
 TEST_F(Mesher, BrepHasNoUnit) {
   const Mesh mesh = mesh_body({.file = saved("box.brep", box_solid), .edge = 0.5}).mesh;
   EXPECT_NEAR(volume_of(mesh), 6, 1e-9);
@@ -410,7 +421,7 @@ TEST_F(Mesher, OddAnswersAreOneSentenceThatNamesProgramAndBody) {
 TEST_F(Mesher, AnswersThatLeadOutsideTheMeshAreRefused) {
   const fs::path geo = write("box.geo", box_solid);
   const auto accepted = [&](const std::function<void(MeshedBody&)>& spoil) {
-    MeshedBody body{block_mesh({1, 1, 1}, {2, 1, 1}), {}, 0, {}};
+    MeshedBody body{block_mesh({1, 1, 1}, {2, 1, 1}), {}, 0, {}, {}};
     spoil(body);
     std::ofstream(folder_.path / "answer", std::ios::binary) << to_cbor(body);
     use_program("cp '" + (folder_.path / "answer").string() + "' \"$2\"");
@@ -437,6 +448,7 @@ TEST_F(Mesher, AnswersThatLeadOutsideTheMeshAreRefused) {
   EXPECT_FALSE(accepted([](auto& b) { b.mesh.hexahedra.clear(); }));
   EXPECT_FALSE(accepted([](auto& b) { b.mesh.curved = NodalVectors::Zero(5, 3); }));
   EXPECT_FALSE(accepted([](auto& b) { b.coarser.push_back(Mesh()); }));
+  EXPECT_FALSE(accepted([](auto& b) { b.facets.triangles = {{0, 1, 2}}; }));
 }
 
 TEST_F(Mesher, OwnScriptsCanBeRefused) {
