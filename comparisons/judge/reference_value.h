@@ -44,9 +44,9 @@ struct TrustedOrders {
   double first = highest;          ///< with which the first difference may fall
 };
 
-/// Those of a scalar measure with an element ("q1", "q2", "p1", "p2").  In a smooth solution displacements converge with
-/// degree + 1 and stresses with degree; all else as with clamped edges.  There a displacement's error is the energy of
-/// the field's, of first order at least, and its first difference falls with up to degree + 1.
+/// Those of a scalar measure with an element ("q1", "q2", "p1", "p2").  In a smooth solution displacements converge
+/// with degree + 1 and stresses with degree; all else as with clamped edges.  There a displacement's error is the
+/// energy of the field's, of first order at least, and its first difference falls with up to degree + 1.
 TrustedOrders trusted_orders(const std::string& measure, const std::string& element, bool smooth);
 
 /// Cell sizes of the first grid over the second's, and of the second over the third's.
@@ -58,12 +58,13 @@ struct GridRatios {
 bool are_refined(const GridRatios& ratios);
 
 /// Limit of a quantity computed on three grids (coarse to fine; the last three of more).  `noise`: round-off of the
-/// values. For monotone values with an order p, `lowest` or more, whose limit is no further from the finest value than the
-/// spread of the three: Richardson extrapolation with p, at most `highest`.  Its uncertainty is Fs times the larger of
-/// two estimates of the finest grid's error, from the last difference at that order and from the first at p, at most
+/// values. For monotone values with an order p, `lowest` or more, whose limit is no further from the finest value than
+/// the spread of the three: Richardson extrapolation with p, at most `highest`.  Its uncertainty is Fs times the larger
+/// of two estimates of the finest grid's error, from the last difference at that order and from the first at p, at most
 /// `first`; the latter may be the larger where p exceeds `highest`.  Otherwise the finest value, with an uncertainty of
-/// Fs times: for slow sequences the extrapolation step with p, at least `lowest`, or the spread of the three; for sequences that are not monotone the last difference, or what remains of the first at first
-/// order. For grids that are not refined: the finest value, 3 times the spread.
+/// Fs times: for slow sequences the extrapolation step with p, at least `lowest`, or the spread of the three; for
+/// sequences that are not monotone the last difference, or what remains of the first at first order. For grids that are
+/// not refined: the finest value, 3 times the spread.
 ReferenceValue extrapolate(const std::vector<double>& values, double noise, const TrustedOrders& orders = {},
                            const GridRatios& ratios = {});
 

@@ -106,7 +106,8 @@ std::string to_cbor(const MeshedBody& body) {
                {"notes", body.notes},
                {"edge", body.edge},
                {"coarser", coarser},
-               {"facets", to_json(mesh_of(body.facets, "facets"))}});
+               {"facets", to_json(mesh_of(body.facets, "facets"))},
+               {"smooth_volume", body.smooth_volume}});
 }
 
 std::string refusal_to_cbor(const std::string& message) { return cbor({{"refused", message}}); }
@@ -114,7 +115,7 @@ std::string refusal_to_cbor(const std::string& message) { return cbor({{"refused
 MeshedBody answer_from_cbor(const std::string& bytes) try {
   const json j = json::from_cbor(bytes);
   if (j.contains("refused")) throw InputError(j.at("refused").get<std::string>());
-  MeshedBody body{sound(mesh_from_json(j.at("mesh"))), j.at("notes"), j.at("edge"), {}, {}};
+  MeshedBody body{sound(mesh_from_json(j.at("mesh"))), j.at("notes"), j.at("edge"), {}, {}, j.at("smooth_volume")};
   for (const json& mesh : j.at("coarser")) body.coarser.push_back(sound(mesh_from_json(mesh)));
   body.facets = surface_of(sound(mesh_from_json(j.at("facets"))));
   return body;

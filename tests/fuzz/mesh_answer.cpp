@@ -25,7 +25,7 @@ void walk(const springproof::Mesh& mesh) {
 /// Hexahedra with a grid, patches and curved edges; tetrahedra.
 springproof::MeshedBody example() {
   using namespace springproof;
-  MeshedBody body{block_mesh({1, 1, 1}, {1, 1, 2}), {"a note"}, 0.5, {Mesh()}, {}};
+  MeshedBody body{block_mesh({1, 1, 1}, {1, 1, 2}), {"a note"}, 0.5, {Mesh()}, {}, 0};
   body.facets = outside_of(body.mesh);
   body.mesh.curved = NodalVectors::Zero(27 * 2, 3);
   body.coarser[0].nodes = body.mesh.nodes.topRows(5);

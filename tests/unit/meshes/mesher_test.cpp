@@ -303,7 +303,17 @@ TEST_F(Mesher, FacetsOfASurfaceFileComeBackInMetres) {
   const MeshedBody body = mesh_body({.file = file, .edge = 1e-3, .scale = 1e-3});
   EXPECT_EQ(body.facets.triangles.size(), ball.triangles.size());
   EXPECT_NEAR(volume(body.facets), 1e-9 * volume(ball), 1e-15);
+  EXPECT_EQ(body.smooth_volume, 0);
   EXPECT_TRUE(mesh_body({.file = saved("box.brep", box_solid), .edge = 0.5}).facets.triangles.empty());
+}
+
+TEST_F(Mesher, SmoothBodiesHaveTheirVolumeBesideThatOfTheirChords) {
+  const std::string ball = "SetFactory(\"OpenCASCADE\");\nSphere(1) = {0, 0, 0, 1};\n";
+  for (const fs::path& file : {write("ball.geo", ball), saved("ball.brep", ball)}) {
+    const MeshedBody body = mesh_body({.file = file, .edge = 1e-3, .scale = 2e-3});
+    EXPECT_NEAR(body.smooth_volume, 8e-9 * 4 * std::numbers::pi / 3, 1e-14) << file;
+    EXPECT_GT(std::abs(volume_of(body.mesh) / body.smooth_volume - 1), 1e-5) << file;
+  }
 }
 
 TEST_F(Mesher, BrepHasNoUnit) {
@@ -421,7 +431,7 @@ TEST_F(Mesher, OddAnswersAreOneSentenceThatNamesProgramAndBody) {
 TEST_F(Mesher, AnswersThatLeadOutsideTheMeshAreRefused) {
   const fs::path geo = write("box.geo", box_solid);
   const auto accepted = [&](const std::function<void(MeshedBody&)>& spoil) {
-    MeshedBody body{block_mesh({1, 1, 1}, {2, 1, 1}), {}, 0, {}, {}};
+    MeshedBody body{block_mesh({1, 1, 1}, {2, 1, 1}), {}, 0, {}, {}, 0};
     spoil(body);
     std::ofstream(folder_.path / "answer", std::ios::binary) << to_cbor(body);
     use_program("cp '" + (folder_.path / "answer").string() + "' \"$2\"");
