@@ -243,7 +243,7 @@ Part run_part(const PreparedCase& prepared, std::size_t material, const VtuOutpu
   }
   add_extrapolated(run);
   if (prepared.experiment.line) add_line_orders(prepared.experiment, run.part.rows);
-  run.part.varied = varied_runs(prepared.experiment);
+  run.part.varied = varied_runs(prepared.experiment, keeper);
   return std::move(run.part);
 }
 

@@ -8,6 +8,7 @@
 #include "comparisons/reference/reference_grids.h"
 #include "comparisons/reference/voxel_reference.h"
 #include "comparisons/run/prepare.h"
+#include "comparisons/run/varied_runs.h"
 #include "meshes/volume.h"
 #include "problem/case_file/external.h"
 
@@ -149,6 +150,7 @@ std::vector<RunCost> expected_runs(const PreparedCase& prepared, const Isotropic
     if (small_enough(e, *lattice.mesh))
       for (std::size_t m = 0; m < prepared.models.size(); ++m)
         runs.all.push_back(cost_of_model(prepared, lattice, m, material));
+  for (const RunCost& run : expected_variations(e)) runs.all.push_back(run);
   return runs.all;
 }
 
@@ -184,7 +186,7 @@ double unmeshed_seconds(const Experiment& e, const IsotropicMaterial& material) 
     unmeshed.experiment = e;
     add_grids_in_time(unmeshed, material, runs);
   }
-  return sum_of(runs.all);
+  return sum_of(runs.all) + sum_of(expected_variations(e));
 }
 
 }  // namespace springproof

@@ -3,13 +3,18 @@
 
 #include <vector>
 
+#include "comparisons/reference/run_keeper.h"
 #include "comparisons/results/records.h"
 
 namespace springproof {
 
 /// Of the first model, and of the finite elements of the case where only the load case is another; with an input
 /// changed on the coarsest lattice alone.  Only the rows that are measured, and turns.
+/// Each is kept.
 /// @return none for a case without measured values
-std::vector<VariedRun> varied_runs(const Experiment& experiment);
+std::vector<VariedRun> varied_runs(const Experiment& experiment, const RunKeeper& keeper);
+
+/// What each of them is expected to take.
+std::vector<RunCost> expected_variations(const Experiment& experiment);
 
 }  // namespace springproof
