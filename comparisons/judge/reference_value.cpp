@@ -9,8 +9,6 @@
 namespace springproof {
 namespace {
 
-constexpr double lowest_order = 0.5;
-
 const char* const equal = "equal on all grids to solver accuracy";
 const char* const richardson = "Richardson, GCI";
 const char* const lucky = "Richardson; order too high to be trusted";
@@ -35,8 +33,8 @@ double by_first(double order, const GridRatios& r) {
 }
 
 /// False where the limit would lie further from the finest grid than the three are apart.
-bool is_fast_enough(double quotient, double order, const GridRatios& ratios) {
-  return order >= lowest_order && by_last(order, ratios) <= 1 + quotient;
+bool is_fast_enough(double quotient, double order, const TrustedOrders& orders, const GridRatios& ratios) {
+  return order >= orders.lowest && by_last(order, ratios) <= 1 + quotient;
 }
 
 std::string not_refined(const GridRatios& r) {
@@ -68,17 +66,18 @@ double weighted_norm(const NodalVectors& u, const Eigen::VectorXd& weights) {
   return std::sqrt(weighted_product(u, u, weights));
 }
 
-double trusted_order(const std::string& measure, const std::string& element, bool smooth) {
+TrustedOrders trusted_orders(const std::string& measure, const std::string& element, bool smooth) {
   const double degree = element.back() - '0';
   const std::string kind = kind_of(measure);
-  if (smooth && (kind == "displacement" || kind == "mean_displacement")) return degree + 1;
-  if (smooth && kind == "stress") return degree;
-  return clamped_order;
+  if (kind == "displacement" || kind == "mean_displacement")
+    return {.highest = smooth ? degree + 1 : clamped_order, .lowest = 1, .first = degree + 1};
+  if (smooth && kind == "stress") return {.highest = degree};
+  return {};
 }
 
 bool are_refined(const GridRatios& ratios) { return std::min(ratios.coarse, ratios.fine) >= smallest_ratio; }
 
-ReferenceValue extrapolate(const std::vector<double>& values, double noise, double highest_order,
+ReferenceValue extrapolate(const std::vector<double>& values, double noise, const TrustedOrders& orders,
                            const GridRatios& ratios) {
   if (values.size() < 3) throw std::invalid_argument("an uncertainty needs three grids");
   const double f1 = values[values.size() - 3], f2 = values[values.size() - 2], f3 = values.back();
@@ -92,11 +91,12 @@ ReferenceValue extrapolate(const std::vector<double>& values, double noise, doub
     return finest(safety_factor, std::max(std::abs(fine), std::abs(coarse) / (ratios.coarse * ratios.fine)),
                   "not converging monotonically: finest grid");
   const double order = order_of(coarse / fine, ratios);
-  if (!is_fast_enough(coarse / fine, order, ratios))
-    return finest(safety_factor, std::max(spread, by_last(std::max(order, lowest_order), ratios) * std::abs(fine)),
+  if (!is_fast_enough(coarse / fine, order, orders, ratios))
+    return finest(safety_factor, std::max(spread, by_last(std::max(order, orders.lowest), ratios) * std::abs(fine)),
                   "not converging fast enough: finest grid");
-  const double p = std::min(order, highest_order), step = by_last(p, ratios) * fine;
-  return {f3 + step, safety_factor * std::max(std::abs(step), by_first(p, ratios) * std::abs(coarse)) + noise, order,
+  const double p = std::min(order, orders.highest), step = by_last(p, ratios) * fine,
+               first = by_first(std::min(order, orders.first), ratios) * coarse;
+  return {f3 + step, safety_factor * std::max(std::abs(step), std::abs(first)) + noise, order,
           order > p ? lucky : richardson};
 }
 
@@ -181,8 +181,8 @@ ReferenceField extrapolate(const std::vector<NodalVectors>& fields, const Eigen:
     return with(left, fall ? Sequence::converging : Sequence::not_converging,
                 fmt::format("{}the grids' differences point apart (correlation {:.2f}): finest grid{}",
                             fall ? "" : "not converging: ", along, fall ? ", at first order" : ""));
-  if (!is_fast_enough(quotient, order, ratios))
-    return finest(safety_factor * spread.cwiseMax(by_last(std::max(order, lowest_order), ratios) * last),
+  if (!is_fast_enough(quotient, order, {}, ratios))
+    return finest(safety_factor * spread.cwiseMax(by_last(std::max(order, TrustedOrders{}.lowest), ratios) * last),
                   "not converging fast enough: finest grid");
   const double p = std::min(order, clamped_order);
   result.displacement += by_last(p, ratios) * fine;

@@ -37,9 +37,17 @@ inline constexpr double smallest_correlation =
 /// the true order low.
 inline constexpr double clamped_order = 2;
 
-/// The highest order used for a scalar measure with an element ("q1", "q2", "p1", "p2").  In a smooth solution
-/// displacements converge with degree + 1 and stresses with degree; all else as with clamped edges.
-double trusted_order(const std::string& measure, const std::string& element, bool smooth);
+/// Which orders a sequence is believed to converge with.
+struct TrustedOrders {
+  double highest = clamped_order;  ///< of the step to the limit
+  double lowest = 0.5;             ///< a slower sequence is not extrapolated, nor is this slow
+  double first = highest;          ///< with which the first difference may fall
+};
+
+/// Those of a scalar measure with an element ("q1", "q2", "p1", "p2").  In a smooth solution displacements converge
+/// with degree + 1 and stresses with degree; all else as with clamped edges.  There a displacement's error is the
+/// energy of the field's, of first order at least, and its first difference falls with up to degree + 1.
+TrustedOrders trusted_orders(const std::string& measure, const std::string& element, bool smooth);
 
 /// Cell sizes of the first grid over the second's, and of the second over the third's.
 struct GridRatios {
@@ -50,14 +58,14 @@ struct GridRatios {
 bool are_refined(const GridRatios& ratios);
 
 /// Limit of a quantity computed on three grids (coarse to fine; the last three of more).  `noise`: round-off of the
-/// values. For monotone values with an order p whose limit is no further from the finest value than the spread of the
-/// three (at ratios of 2: p of 1/2 or more): Richardson extrapolation with p, at most `highest_order`.  Its uncertainty
-/// is Fs times the larger of the two estimates of the finest grid's error at that order, from the last and from the
-/// first difference; the latter is the larger where the observed order exceeds `highest_order`.  Otherwise the finest
-/// value, with an uncertainty of Fs times: for slow sequences the extrapolation step with p, at least 1/2, or the
-/// spread of the three; for sequences that are not monotone the last difference, or what remains of the first at first
-/// order. For grids that are not refined: the finest value, 3 times the spread.
-ReferenceValue extrapolate(const std::vector<double>& values, double noise, double highest_order = clamped_order,
+/// values. For monotone values with an order p, `lowest` or more, whose limit is no further from the finest value than
+/// the spread of the three: Richardson extrapolation with p, at most `highest`.  Its uncertainty is Fs times the larger
+/// of two estimates of the finest grid's error, from the last difference at that order and from the first at p, at most
+/// `first`; the latter may be the larger where p exceeds `highest`.  Otherwise the finest value, with an uncertainty of
+/// Fs times: for slow sequences the extrapolation step with p, at least `lowest`, or the spread of the three; for
+/// sequences that are not monotone the last difference, or what remains of the first at first order. For grids that are
+/// not refined: the finest value, 3 times the spread.
+ReferenceValue extrapolate(const std::vector<double>& values, double noise, const TrustedOrders& orders = {},
                            const GridRatios& ratios = {});
 
 /// The finest of three values beside their limit, at a place where the grids are hardly refined: as for ratios below

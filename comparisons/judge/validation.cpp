@@ -102,7 +102,7 @@ void set_limit(const Sequence& s, ValidatedValue& v) {
   if (n == 1) return;
   const ReferenceValue limit =
       n == 2 ? extrapolate_two(s.values[0], s.values[1])
-             : extrapolate(s.values, solver_noise * std::abs(s.values.back()), clamped_order,
+             : extrapolate(s.values, solver_noise * std::abs(s.values.back()), {},
                            {ratio(s.cells[n - 3], s.cells[n - 2]), ratio(s.cells[n - 2], s.cells[n - 1])});
   v.simulated = limit.value;
   v.u_numerical = limit.uncertainty / 2;

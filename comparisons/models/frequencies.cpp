@@ -111,11 +111,11 @@ ReferenceModes reference_modes(const PreparedCase& prepared, const IsotropicMate
     const auto pairs = pair_modes(out.finest, modes_at_nodes(prepared, s), weights_of_nodes(prepared));
     for (int i = 0; i < modes; ++i) values[i].push_back(s.frequencies[pairs[i].partner.value_or(i)]);
   }
-  const double order = has_smooth_modes(prepared) ? eigenvalue_order : clamped_order;
+  const TrustedOrders orders{.highest = has_smooth_modes(prepared) ? eigenvalue_order : clamped_order};
   std::map<std::string, ReferenceValue> limits;  // in their order, each the one component of its own vector
   for (int i = 0; i < modes; ++i)
     limits[fmt::format("frequency.{:03}.value", i + 1)] =
-        extrapolate(values[i], solver_noise * values[i][2], order, ratios_of(grids));
+        extrapolate(values[i], solver_noise * values[i][2], orders, ratios_of(grids));
   raise_to_usual(limits);
   for (const auto& [name, limit] : limits) out.frequencies.push_back(limit);
   put_in_order(out);

@@ -125,7 +125,7 @@ void measure_limits(const PreparedCase& prepared, const ProbesOnGrids& probes, M
   for (const auto& [name, uncorrected] : measured(probes.fields[1] - probes.of_steps)) {
     const std::vector<double>& v = values[name];
     if (v.size() < 3) continue;
-    ReferenceValue value = extrapolate(v, solver_noise * v[2], clamped_order, ratios_of(probes.grids));
+    ReferenceValue value = extrapolate(v, solver_noise * v[2], {}, ratios_of(probes.grids));
     value.uncertainty +=
         coarse_safety_factor * std::abs(v[1] - uncorrected) + prepared.body.load_spread * std::abs(value.value);
     out.history.measured[name] = value.value;

@@ -13,6 +13,7 @@
 #include "comparisons/prepare/measured_lattice.h"
 #include "comparisons/results/records.h"
 #include "meshes/mesh.h"
+#include "meshes/surface/surface.h"
 #include "msm/embedding/cut_lattice.h"
 #include "msm/models.h"
 #include "msm/topology/region.h"
@@ -59,7 +60,10 @@ struct BodyOfCase {
       tetrahedra;  ///< for a body of voxels: three meshes, coarse to fine (the last is the true body)
   std::vector<int>
       uncut;  ///< numbers of their tetrahedra before borders of patches were cut, which determine the refinement ratios
-  double load_spread = 0;          ///< relative difference of loads by area or volume between the meshes
+  std::shared_ptr<const Surface> facets;  ///< of a surface file, for weight and patches; else none
+  std::map<std::string, Vec3> centroids;  ///< of patches by rules, of those facets
+  double chords = 0;       ///< by what share facets may change displacements where the body is smooth; 0: it is not
+  double load_spread = 0;  ///< relative difference of loads by area or volume between the meshes
   std::vector<std::string> notes;  ///< what was repaired or left out of the body
 };
 

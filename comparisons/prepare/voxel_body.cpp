@@ -92,6 +92,14 @@ std::vector<std::string> refine_rims(const PreparedCase& prepared, int uncut, Me
                       mesh.tetrahedra.size())};
 }
 
+/// Facets that leave out a share of a smooth body's volume make it twice as much softer in bending and torsion.
+double chords(const MeshedBody& body) {
+  constexpr double most = 0.2;  // beyond, a part of the solid was meshed
+  if (!(body.smooth_volume > 0)) return 0;
+  const double share = 2 * std::abs(volume(body.mesh, body.mesh.nodes) / body.smooth_volume - 1);
+  return share < most ? share : 0;
+}
+
 void mesh_the_body(MeshRequest request, PreparedCase& prepared, std::string& hint) {
   const Experiment& e = prepared.experiment;
   request.edge = e.reference.edge;
@@ -103,6 +111,8 @@ void mesh_the_body(MeshRequest request, PreparedCase& prepared, std::string& hin
   prepared.body.notes.insert(prepared.body.notes.end(), body.notes.begin(), body.notes.end());
   hint = scale_hint(body.mesh, e.body);
   if (!hint.empty()) prepared.body.notes.push_back(hint);
+  prepared.body.chords = chords(body);
+  if (!body.facets.triangles.empty()) prepared.body.facets = std::make_shared<Surface>(std::move(body.facets));
   body.coarser.push_back(std::move(body.mesh));
   for (const Mesh& mesh : body.coarser) prepared.body.uncut.push_back(static_cast<int>(mesh.tetrahedra.size()));
   for (std::size_t m = 0; m < body.coarser.size(); ++m) {
@@ -268,11 +278,24 @@ void cut_lattices(PreparedCase& prepared) {
   }
 }
 
-/// The facets of a patch: for a patch by a rule its part of each facet, cut at the border; for others whole facets.
-std::vector<FacetPart> parts_of(const Experiment& e, const Mesh& mesh, const std::string& name) {
-  const auto rule =
-      std::find_if(e.patches.begin(), e.patches.end(), [&](const PatchRule& r) { return r.name == name; });
-  if (rule != e.patches.end()) return parts_of(*rule, mesh);
+/// What a rule names of the file's facets; nothing without these, or where it goes by normals, which noise turns.
+std::vector<FacetPart> parts_of_file(const PreparedCase& prepared, const std::string& name) {
+  const std::vector<PatchRule>& rules = prepared.experiment.patches;
+  const auto rule = std::find_if(rules.begin(), rules.end(), [&](const PatchRule& r) { return r.name == name; });
+  if (!prepared.body.facets || rule == rules.end()) return {};
+  const PatchRule as_on_the_mesh = settled(*rule, outside_of(*prepared.body.tetrahedra.back()));
+  if (as_on_the_mesh.facing) return {};
+  return parts_of(as_on_the_mesh, *prepared.body.facets);
+}
+
+/// The facets of a patch: for a patch by a rule its part of each facet, of the file or the finest mesh, cut at the
+/// border; for others whole facets.
+std::vector<FacetPart> parts_of(const PreparedCase& prepared, const std::string& name) {
+  if (std::vector<FacetPart> of_file = parts_of_file(prepared, name); !of_file.empty()) return of_file;
+  const Mesh& mesh = *prepared.body.tetrahedra.back();
+  const std::vector<PatchRule>& rules = prepared.experiment.patches;
+  const auto rule = std::find_if(rules.begin(), rules.end(), [&](const PatchRule& r) { return r.name == name; });
+  if (rule != rules.end()) return parts_of(*rule, mesh);
   const auto X = [&](int n) -> Vec3 { return mesh.nodes.row(n).transpose(); };
   std::vector<FacetPart> parts;
   for (const auto& f : patch(mesh, name).facets) {
@@ -308,9 +331,20 @@ Vec3 centroid(const Mesh& mesh) {
   return mesh.nodes.transpose() * volumes / volumes.sum();
 }
 
-void set_wrenches(PreparedCase& prepared) {
+/// The weight's resultant, of the body within the file's facets where there are such.
+Wrench weight(const PreparedCase& prepared, const Vec3& acceleration) {
+  const double density = prepared.experiment.materials.front().density;
+  if (prepared.body.facets)
+    return {density * volume(*prepared.body.facets) * acceleration, Vec3::Zero(), centroid(*prepared.body.facets)};
   const Mesh& body = *prepared.body.tetrahedra.back();
-  const auto parts = [&](const std::string& name) { return parts_of(prepared.experiment, body, name); };
+  return {density * volume(body, body.nodes) * acceleration, Vec3::Zero(), centroid(body)};
+}
+
+void set_wrenches(PreparedCase& prepared) {
+  const auto parts = [&](const std::string& name) { return parts_of(prepared, name); };
+  for (const PatchRule& rule : prepared.experiment.patches)
+    if (const std::vector<FacetPart> of_file = parts_of_file(prepared, rule.name); !of_file.empty())
+      prepared.body.centroids[rule.name] = centroid(of_file);
   const auto at_centroid = [](const Vec3& force, const Vec3& c) { return Wrench{force, Vec3::Zero(), c}; };
   const std::size_t own = prepared.loads.size() - prepared.experiment.weights;  // masses weigh where their inertia is
   for (Load& load : std::span(prepared.loads).first(own)) {
@@ -321,8 +355,7 @@ void set_wrenches(PreparedCase& prepared) {
     } else if (auto* f = std::get_if<PatchForce>(&load)) {
       f->wrench = at_centroid(f->force, centroid(parts(f->on)));
     } else if (auto* g = std::get_if<Gravity>(&load); g && !flies(prepared.experiment)) {
-      const double mass = prepared.experiment.materials.front().density * volume(body, body.nodes);
-      g->wrench = at_centroid(mass * g->acceleration, centroid(body));
+      g->wrench = weight(prepared, g->acceleration);
     }
   }
 }
@@ -334,13 +367,14 @@ double spread(const PreparedCase& prepared, const std::function<double(const Mes
 }
 
 /// Sets the uncertainty of loads proportional to an area or a volume, as every mesh carries the resultants of the
-/// finest.
+/// finest, or of the file's facets, which are certain.
 void set_load_spread(PreparedCase& prepared) {
   const Experiment& e = prepared.experiment;
   for (const Load& load : e.loads) {
     const std::string* on = patch_of(load);
     const bool by_area = std::holds_alternative<Traction>(load) || std::holds_alternative<Pressure>(load);
     if (!by_area && (!std::holds_alternative<Gravity>(load) || flies(e))) continue;
+    if (on ? prepared.body.centroids.contains(*on) : prepared.body.facets != nullptr) continue;
     const double off =
         spread(prepared, [&](const Mesh& m) { return on ? nodal_areas(m, patch(m, *on)).sum() : volume(m, m.nodes); });
     if (off <= least_spread) continue;
@@ -462,8 +496,12 @@ void prepare_voxel_body(PreparedCase& prepared) {
 std::vector<PatchReaction> about_true_patches(const PreparedCase& prepared, const Mesh& own,
                                               std::vector<PatchReaction> reactions) {
   const Mesh& body = *prepared.body.tetrahedra.back();
-  for (PatchReaction& r : reactions)
-    r.torque += (centroid(own, patch(own, r.patch)) - centroid(body, patch(body, r.patch))).cross(r.force);
+  for (PatchReaction& r : reactions) {
+    const auto of_file = prepared.body.centroids.find(r.patch);
+    const Vec3 about =
+        of_file != prepared.body.centroids.end() ? of_file->second : centroid(body, patch(body, r.patch));
+    r.torque += (centroid(own, patch(own, r.patch)) - about).cross(r.force);
+  }
   return reactions;
 }
 

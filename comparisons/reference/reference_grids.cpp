@@ -311,7 +311,7 @@ std::map<std::string, ReferenceValue> limits_of(const PreparedCase& prepared, co
     const double scale = scale_of(measure, values[2], body);
     const std::vector<double> sequence = {values[0].at(measure), values[1].at(measure), fine};
     ReferenceValue& limit = limits[measure];
-    limit = extrapolate(sequence, solver_noise * scale, trusted_order(measure, e.element, experiment.reference.smooth),
+    limit = extrapolate(sequence, solver_noise * scale, trusted_orders(measure, e.element, experiment.reference.smooth),
                         ratios_of(e));
     if (const auto rim = rims.find(probe_of(measure)); rim != rims.end()) {
       limit = finest_of(sequence, limit);

@@ -81,6 +81,14 @@ std::vector<fem::Solution> solve_cubes(const PreparedCase& prepared, const Latti
   return solutions;
 }
 
+/// What facets of a smooth body may have done to a value of this size, unless it is less than a tenth of the error.
+void add_facets(const PreparedCase& prepared, double size, ErrorSplit& split) {
+  const double most = prepared.body.chords * size;
+  if (most <= 0.1 * std::abs(split.total)) return;
+  split.facets = most;
+  split.uncertainty += most;
+}
+
 /// The split of reaction_error; nothing where no support is moved.
 std::optional<ErrorSplit> split_of_reactions(const PreparedCase& prepared, const VoxelLimit& voxels,
                                              const BodyLimit& body,
@@ -104,6 +112,7 @@ std::optional<ErrorSplit> split_of_reactions(const PreparedCase& prepared, const
   split.geometry_error = distance(limit, truth);
   split.uncertainty = distance(values_of(body.scalars, 1), truth);
   split.voxel_uncertainty = distance(values_of(voxels.limits, 1), limit);
+  add_facets(prepared, 1, split);
   return split;
 }
 
@@ -208,6 +217,7 @@ std::vector<ErrorSplit> split_error(const PreparedCase& prepared, const Lattice&
   field.geometry_error = distance(voxels.limit, body.field.displacement);
   field.voxel_uncertainty = std::sqrt(weights.dot(voxels.nodal_uncertainty.cwiseAbs2()) / weights.sum()) / size;
   field.uncertainty = body.field.uncertainty;
+  add_facets(prepared, 1, field);
   splits.push_back(field);
 
   if (const auto s = split_of_reactions(prepared, voxels, body, values, blank)) splits.push_back(*s);
@@ -227,6 +237,7 @@ std::vector<ErrorSplit> split_error(const PreparedCase& prepared, const Lattice&
     s.geometry_error = limit.value - truth.value;
     s.voxel_uncertainty = limit.uncertainty;
     s.uncertainty = truth.uncertainty;
+    add_facets(prepared, std::abs(truth.value), s);
     splits.push_back(s);
   }
   return splits;

@@ -131,8 +131,10 @@ struct ErrorSplit : RunKey {
   double model_error = 0;           ///< model - eight-node elements on the same voxels
   double discretisation_error = 0;  ///< those - the limit of refined elements on the same voxels
   double geometry_error = 0;        ///< that limit - body-fitted limit
-  double uncertainty = 0;           ///< of the body-fitted limit, and so of the total
+  double uncertainty = 0;           ///< of the body-fitted limit and the facets, and so of the total
   double voxel_uncertainty = 0;     ///< of the limit on the voxels
+  double facets =
+      0;  ///< of the total, at most, as facets of a smooth body are chords: in `uncertainty`; 0: below a tenth
 };
 
 /// The deformed surface of one run, for the report's 3D view.

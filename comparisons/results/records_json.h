@@ -24,7 +24,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LineRecord, model, poisson_ratio, cells, firs
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(HistoryRecord, model, poisson_ratio, cells, time_step, time, names, units, values,
                                    integrator, measured, probe)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ErrorSplit, model, poisson_ratio, cells, voxel_edge_m, measure, unit, total,
-                                   model_error, discretisation_error, geometry_error, voxel_uncertainty, uncertainty)
+                                   model_error, discretisation_error, geometry_error, voxel_uncertainty, uncertainty,
+                                   facets)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Deformation, poisson_ratio, principal_strain, rotation_deg, strained_share,
                                    applied_N, reacted_N)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(CrackRecord, model, poisson_ratio, cells, shrinkage, broken, fragments, stored,

@@ -48,7 +48,7 @@ void give_in_units_of_case(CaseResult& result) {
   }
   for (ErrorSplit& s : result.splits)
     give(units, s.unit, s.total, s.model_error, s.discretisation_error, s.geometry_error, s.uncertainty,
-         s.voxel_uncertainty);
+         s.voxel_uncertainty, s.facets);
   for (HistoryRecord& h : result.histories)
     for (std::size_t i = 0; i < h.units.size(); ++i) give(units, h.units[i], h.values[i]);
 }

@@ -131,6 +131,11 @@ double model_volume() {
   return sum;
 }
 
+MeshedBody of_solid(MeshedBody body, double volume) {
+  body.smooth_volume = volume;
+  return body;
+}
+
 /// Turns triangles of the body's surface as the facets of a mesh beside them.
 void turn_outward(const Mesh& mesh, Surface& surface) {
   const std::vector<OuterFacet> facets = outer_facets(mesh);
@@ -319,15 +324,17 @@ MeshedBody mesh_script(const MeshRequest& request) {
   const double drawn = r.edge > 0 ? r.edge : edge_for(r.tetrahedra, 0.4 * box);
   r.edge = drawn;
   if (box > 0) refuse_too_many(r, box);
+  double volume = 0;  // in the script's units
   {
     GmshSession session(parameters_of(r));
     open_script(r, session);
-    const double volume = std::pow(r.scale, 3) * model_volume();
-    if (request.edge == 0 && volume > 0) r.edge = edge_for(r.tetrahedra, volume);
+    volume = model_volume();
+    if (request.edge == 0 && volume > 0) r.edge = edge_for(r.tetrahedra, std::pow(r.scale, 3) * volume);
     const MeshAt at = model_at(r, session, drawn);
-    if (r.coarser.empty() || lines_follow(r.edge, drawn) || !is_structured(at, r.edge)) return mesh_refined(r, at);
+    if (r.coarser.empty() || lines_follow(r.edge, drawn) || !is_structured(at, r.edge))
+      return of_solid(mesh_refined(r, at), volume);
   }
-  return mesh_refined(r, script_at(r));
+  return of_solid(mesh_refined(r, script_at(r)), volume);
 }
 
 MeshedBody mesh_solid(const MeshRequest& request) {
@@ -351,7 +358,7 @@ MeshedBody mesh_solid(const MeshRequest& request) {
     gmsh::model::setPhysicalName(2, group, fmt::format("surface_{}", ++number));
   }
   want_edge(r.edge / r.scale);
-  return mesh_refined(r, balanced_at(r, session, r.edge));
+  return of_solid(mesh_refined(r, balanced_at(r, session, r.edge)), volume);
 }
 
 MeshedBody mesh_file(const MeshRequest& r) try {
@@ -365,6 +372,8 @@ MeshedBody mesh_file(const MeshRequest& r) try {
   if (r.scale != 1) scale(body.mesh, r.scale);
   for (Mesh& mesh : body.coarser)
     if (r.scale != 1) scale(mesh, r.scale);
+  for (Vec3& x : body.facets.points) x *= r.scale;
+  body.smooth_volume *= std::pow(r.scale, 3);
   return body;
 } catch (const std::string& message) {
   refuse(r.file, "gmsh: " + message);

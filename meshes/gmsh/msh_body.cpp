@@ -57,7 +57,8 @@ MeshedBody read_cells(const MeshRequest& r, const std::vector<ElementBlock>& blo
     refuse(r.file, fmt::format("mixed or unknown cells: {} (allowed: only tetrahedra or only hexahedra; others with "
                                "voxels or voxel_edge_m, which take the surface alone)",
                                counts(blocks)));
-  MeshedBody body{{}, std::move(notes), 0, {}};
+  MeshedBody body;
+  body.notes = std::move(notes);
   if (std::any_of(blocks.begin(), blocks.end(), [](const auto& b) { return b.order > 1; }))
     body.notes.push_back(
         fmt::format("the cells of higher order ({}) are taken by their corners, with straight edges", counts(blocks)));

@@ -190,6 +190,7 @@ MeshedBody fill_surface(const MeshRequest& request, const Surface& raw) {
   MeshedBody body = r.coarser.empty() ? filled_alone(r, source) : mesh_refined(r, surface_at(r, source));
   if (const std::string note = source.note(); !note.empty()) notes.push_back(note);
   body.notes.insert(body.notes.begin(), notes.begin(), notes.end());
+  body.facets = std::move(surface);
   if (raw.parts.empty()) return body;
   add_parts(raw, body.mesh);
   for (Mesh& mesh : body.coarser) add_parts(raw, mesh);
@@ -210,11 +211,7 @@ MeshedBody mesh_surface(const MeshRequest& r) { return fill_surface(r, read_surf
 MeshedBody vertices_of(const MeshRequest& r) {
   const Surface surface = extension_of(r.file) == ".msh" ? vertices_of_msh(r) : read_surface(r.file);
   MeshedBody body;
-  body.mesh.nodes.resize(static_cast<Eigen::Index>(surface.points.size()), 3);
-  for (std::size_t n = 0; n < surface.points.size(); ++n)
-    body.mesh.nodes.row(static_cast<Eigen::Index>(n)) = surface.points[n].transpose();
-  Patch& triangles = body.mesh.patches.emplace_back(Patch{"triangles", {}});
-  for (const auto& [a, b, c] : surface.triangles) triangles.facets.push_back({a, b, c, -1});
+  body.mesh = mesh_of(surface, "triangles");
   return body;
 }
 

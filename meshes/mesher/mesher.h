@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "meshes/mesh.h"
+#include "meshes/surface/surface.h"
 #include "problem/body.h"
 
 namespace springproof {
@@ -56,6 +57,8 @@ struct MeshedBody {
   std::vector<std::string> notes;  ///< what was repaired, and the quality of the mesh: for the report
   double edge = 0;                 ///< that the tetrahedra were made with [m]; 0: the cells are the file's own
   std::vector<Mesh> coarser;       ///< one per factor of the request
+  Surface facets;                  ///< of a surface file: its own, repaired, in metres; else none
+  double smooth_volume = 0;        ///< of the solid whose chords the facets are [m^3]; 0: there is none
 };
 
 /// Ratios below it say nothing about a limit: meshes of a reference differ by more.

@@ -52,7 +52,25 @@ Mesh sound(Mesh mesh) {
   return mesh;
 }
 
+/// The surface of which `mesh_of` made a mesh.
+Surface surface_of(const Mesh& mesh) {
+  Surface surface;
+  for (const auto& row : mesh.nodes.rowwise()) surface.points.push_back(row.transpose());
+  for (const auto& [a, b, c, none] : mesh.patches.at(0).facets) surface.triangles.push_back({a, b, c});
+  return surface;
+}
+
 }  // namespace
+
+Mesh mesh_of(const Surface& surface, const std::string& patch) {
+  Mesh mesh;
+  mesh.nodes.resize(static_cast<Eigen::Index>(surface.points.size()), 3);
+  for (std::size_t n = 0; n < surface.points.size(); ++n)
+    mesh.nodes.row(static_cast<Eigen::Index>(n)) = surface.points[n].transpose();
+  Patch& facets = mesh.patches.emplace_back(Patch{patch, {}});
+  for (const auto& [a, b, c] : surface.triangles) facets.facets.push_back({a, b, c, -1});
+  return mesh;
+}
 
 std::string to_cbor(const MeshRequest& r) {
   return cbor({{"file", r.file.string()},
@@ -84,7 +102,12 @@ MeshRequest mesh_request_from_cbor(const std::string& bytes) {
 std::string to_cbor(const MeshedBody& body) {
   json coarser = json::array();
   for (const Mesh& mesh : body.coarser) coarser.push_back(to_json(mesh));
-  return cbor({{"mesh", to_json(body.mesh)}, {"notes", body.notes}, {"edge", body.edge}, {"coarser", coarser}});
+  return cbor({{"mesh", to_json(body.mesh)},
+               {"notes", body.notes},
+               {"edge", body.edge},
+               {"coarser", coarser},
+               {"facets", to_json(mesh_of(body.facets, "facets"))},
+               {"smooth_volume", body.smooth_volume}});
 }
 
 std::string refusal_to_cbor(const std::string& message) { return cbor({{"refused", message}}); }
@@ -92,8 +115,9 @@ std::string refusal_to_cbor(const std::string& message) { return cbor({{"refused
 MeshedBody answer_from_cbor(const std::string& bytes) try {
   const json j = json::from_cbor(bytes);
   if (j.contains("refused")) throw InputError(j.at("refused").get<std::string>());
-  MeshedBody body{sound(mesh_from_json(j.at("mesh"))), j.at("notes"), j.at("edge"), {}};
+  MeshedBody body{sound(mesh_from_json(j.at("mesh"))), j.at("notes"), j.at("edge"), {}, {}, j.at("smooth_volume")};
   for (const json& mesh : j.at("coarser")) body.coarser.push_back(sound(mesh_from_json(mesh)));
+  body.facets = surface_of(sound(mesh_from_json(j.at("facets"))));
   return body;
 } catch (const InputError&) {
   throw;

@@ -22,6 +22,9 @@ std::string refusal_to_cbor(const std::string& message);
 /// @throws std::runtime_error: it is no answer.
 MeshedBody answer_from_cbor(const std::string& bytes);
 
+/// A surface as a mesh without cells, its triangles a patch of this name.
+Mesh mesh_of(const Surface& surface, const std::string& patch);
+
 /// ".stl" of "Part.STL".
 std::string extension_of(const std::filesystem::path& file);
 

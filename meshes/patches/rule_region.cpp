@@ -211,11 +211,12 @@ std::vector<FacetPart> parts_within(const RuleRegion& region, const Surface& sur
   return parts;
 }
 
-std::vector<FacetPart> parts_of(const PatchRule& rule, const Mesh& mesh) {
-  const Surface surface = outside_of(mesh);
+std::vector<FacetPart> parts_of(const PatchRule& rule, const Surface& surface) {
   std::vector<FacetPart> parts = parts_within(rule_region(rule, surface), surface);
   std::erase_if(parts, [](const FacetPart& p) { return p.area.isZero(0); });
   return parts;
 }
+
+std::vector<FacetPart> parts_of(const PatchRule& rule, const Mesh& mesh) { return parts_of(rule, outside_of(mesh)); }
 
 }  // namespace springproof

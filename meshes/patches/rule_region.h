@@ -46,7 +46,10 @@ struct FacetPart {
 /// sphere.
 std::vector<FacetPart> parts_within(const RuleRegion& region, const Surface& surface);
 
-/// The parts that a rule names of the outer facets; none is without area.
+/// The parts that a rule names of the facets; none is without area.
+std::vector<FacetPart> parts_of(const PatchRule& rule, const Surface& surface);
+
+/// The same of the outer facets.
 std::vector<FacetPart> parts_of(const PatchRule& rule, const Mesh& mesh);
 
 }  // namespace springproof

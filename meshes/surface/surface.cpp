@@ -24,6 +24,17 @@ double volume(const Surface& surface) {
   return six_volumes / 6;
 }
 
+Vec3 centroid(const Surface& surface) {
+  if (surface.triangles.empty()) return Vec3::Zero();
+  const Vec3 origin = surface.points[surface.triangles[0][0]];
+  Vec3 moment = Vec3::Zero();
+  for (const auto& [i, j, k] : surface.triangles) {
+    const Vec3 a = surface.points[i] - origin, b = surface.points[j] - origin, c = surface.points[k] - origin;
+    moment += a.dot(b.cross(c)) / 6 * (a + b + c) / 4;
+  }
+  return origin + moment / volume(surface);
+}
+
 double area(const Surface& surface) {
   double two_areas = 0;
   for (const auto& [a, b, c] : surface.triangles)

@@ -31,6 +31,9 @@ inline Surface outside_of(const Mesh& mesh) { return outside_of(mesh, outer_face
 /// Volume enclosed by a closed surface [m^3]; negative if its facets point inward.
 double volume(const Surface& surface);
 
+/// Centre of what a closed surface encloses.
+Vec3 centroid(const Surface& surface);
+
 /// Area of all facets [m^2].
 double area(const Surface& surface);
 

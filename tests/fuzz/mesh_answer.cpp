@@ -25,7 +25,8 @@ void walk(const springproof::Mesh& mesh) {
 /// Hexahedra with a grid, patches and curved edges; tetrahedra.
 springproof::MeshedBody example() {
   using namespace springproof;
-  MeshedBody body{block_mesh({1, 1, 1}, {1, 1, 2}), {"a note"}, 0.5, {Mesh()}};
+  MeshedBody body{block_mesh({1, 1, 1}, {1, 1, 2}), {"a note"}, 0.5, {Mesh()}, {}, 0};
+  body.facets = outside_of(body.mesh);
   body.mesh.curved = NodalVectors::Zero(27 * 2, 3);
   body.coarser[0].nodes = body.mesh.nodes.topRows(5);
   body.coarser[0].tetrahedra = {{0, 1, 2, 4}};
@@ -46,5 +47,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const MeshedBody body = answer_from_cbor(std::string(fuzz::view(data, size)));
     walk(body.mesh);
     for (const Mesh& mesh : body.coarser) walk(mesh);
+    centroid(body.facets);
   });
 }

@@ -128,10 +128,13 @@ function splitTable(result, measure) {
   const write = column(measure, entries[0].unit, entries.flatMap(s => [s.total, ...splitParts.map(p => s[p.key])]));
   const sorted = models.flatMap(model => entries.filter(s => s.model === model)
     .sort((a, b) => a.poisson_ratio - b.poisson_ratio || b.voxel_edge_m - a.voxel_edge_m));
-  return table('splits', ['model', 'ν', 'cells', right('voxel edge'), ...splitParts.map(part => right(part.name)), right('total'), right('uncertainty')],
+  const byFacets = entries.some(s => s.facets > 0);  // of smooth bodies
+  return table('splits', ['model', 'ν', 'cells', right('voxel edge'), ...splitParts.map(part => right(part.name)), right('total'), right('uncertainty'),
+    ...(byFacets ? [right('of it facets')] : [])],
     sorted.map(s => tr(modelName(s.model), nuText(s.poisson_ratio), cellsText(s.cells), el('td', {class: 'number'}, lengthText(s.voxel_edge_m)),
       splitParts.map(part => el('td', {class: 'number'}, write.text(s[part.key]))), el('td', {class: 'number'}, el('b', {}, write.text(s.total))),
-      el('td', {class: 'number'}, isNumber(s.uncertainty) ? '± ' + write.short(s.uncertainty) : '–'))));
+      el('td', {class: 'number'}, isNumber(s.uncertainty) ? '± ' + write.short(s.uncertainty) : '–'),
+      byFacets ? [el('td', {class: 'number'}, s.facets > 0 ? '± ' + write.short(s.facets) : '–')] : [])));
 }
 
 const measuresOfSplits = result => distinct(result.splits.map(s => s.measure));

@@ -15,6 +15,7 @@
 #include "meshes/mesher/mesher_exchange.h"
 #include "meshes/volume.h"
 #include "problem/processes/child.h"
+#include "support/surfaces.h"
 #include "support/tolerances.h"
 
 namespace springproof::mesher_test {
@@ -295,6 +296,26 @@ TEST_F(Mesher, StepComesOutInMetresAndNamesItsFaces) {
   EXPECT_NEAR(volume_of(scaled), 6, 1e-6);
 }
 
+TEST_F(Mesher, FacetsOfASurfaceFileComeBackInMetres) {
+  const fs::path file = folder_.path / "ball.stl";
+  const Surface ball = test::sphere(2, 2);
+  test::write_stl_binary(file, ball);
+  const MeshedBody body = mesh_body({.file = file, .edge = 1e-3, .scale = 1e-3});
+  EXPECT_EQ(body.facets.triangles.size(), ball.triangles.size());
+  EXPECT_NEAR(volume(body.facets), 1e-9 * volume(ball), 1e-15);
+  EXPECT_EQ(body.smooth_volume, 0);
+  EXPECT_TRUE(mesh_body({.file = saved("box.brep", box_solid), .edge = 0.5}).facets.triangles.empty());
+}
+
+TEST_F(Mesher, SmoothBodiesHaveTheirVolumeBesideThatOfTheirChords) {
+  const std::string ball = "SetFactory(\"OpenCASCADE\");\nSphere(1) = {0, 0, 0, 1};\n";
+  for (const fs::path& file : {write("ball.geo", ball), saved("ball.brep", ball)}) {
+    const MeshedBody body = mesh_body({.file = file, .edge = 1e-3, .scale = 2e-3});
+    EXPECT_NEAR(body.smooth_volume, 8e-9 * 4 * std::numbers::pi / 3, 1e-14) << file;
+    EXPECT_GT(std::abs(volume_of(body.mesh) / body.smooth_volume - 1), 1e-5) << file;
+  }
+}
+
 TEST_F(Mesher, BrepHasNoUnit) {
   const Mesh mesh = mesh_body({.file = saved("box.brep", box_solid), .edge = 0.5}).mesh;
   EXPECT_NEAR(volume_of(mesh), 6, 1e-9);
@@ -410,7 +431,7 @@ TEST_F(Mesher, OddAnswersAreOneSentenceThatNamesProgramAndBody) {
 TEST_F(Mesher, AnswersThatLeadOutsideTheMeshAreRefused) {
   const fs::path geo = write("box.geo", box_solid);
   const auto accepted = [&](const std::function<void(MeshedBody&)>& spoil) {
-    MeshedBody body{block_mesh({1, 1, 1}, {2, 1, 1}), {}, 0, {}};
+    MeshedBody body{block_mesh({1, 1, 1}, {2, 1, 1}), {}, 0, {}, {}, 0};
     spoil(body);
     std::ofstream(folder_.path / "answer", std::ios::binary) << to_cbor(body);
     use_program("cp '" + (folder_.path / "answer").string() + "' \"$2\"");
@@ -437,6 +458,7 @@ TEST_F(Mesher, AnswersThatLeadOutsideTheMeshAreRefused) {
   EXPECT_FALSE(accepted([](auto& b) { b.mesh.hexahedra.clear(); }));
   EXPECT_FALSE(accepted([](auto& b) { b.mesh.curved = NodalVectors::Zero(5, 3); }));
   EXPECT_FALSE(accepted([](auto& b) { b.coarser.push_back(Mesh()); }));
+  EXPECT_FALSE(accepted([](auto& b) { b.facets.triangles = {{0, 1, 2}}; }));
 }
 
 TEST_F(Mesher, OwnScriptsCanBeRefused) {

@@ -11,10 +11,12 @@
 
 #include "comparisons/models/frequencies.h"
 #include "comparisons/prepare/sampling.h"
+#include "meshes/patches/rule_region.h"
 #include "meshes/volume.h"
 #include "msm/embedding/boundary.h"
 #include "msm/models.h"
 #include "problem/files/files.h"
+#include "support/surfaces.h"
 #include "support/voxel_case.h"
 #include "support/vtu_reader.h"
 
@@ -256,6 +258,33 @@ TEST(VoxelBody, TetrahedraAreSmallWhereAHeldPatchEndsOnASmoothSurface) {
   EXPECT_LT(growth(low, "facing = { direction = [0, 0, -1], within_deg = 60 }"), 2) << "a ragged border";
   EXPECT_LT(growth("[body]", "kinematics = \"hencky\"\n[body]"), 2) << "at large strain small cells snap";
   EXPECT_LT(growth("on = \"low\"", "on = \"surface\""), 2) << "held all around";
+}
+
+TEST(VoxelBody, WeightAndPatchesAreThoseOfTheFilesFacets) {
+  const Surface ball = moved(sphere(1, 3), 0.1, {0.1, 0.1, 0.1});
+  const std::filesystem::path file = std::filesystem::temp_directory_path() / fmt::format("ball_{}.stl", getpid());
+  write_stl_binary(file, ball);
+  std::string text =
+      ball_case(100, "[[load]]\ngravity_m_s2 = [1, -2, -9.81]", "\"hybmss\"", "elements = []\nedge_m = 0.05");
+  text.replace(text.find("sphere.geo"), 10, file.string());
+  text.erase(text.find("size_m"), text.find("voxels") - text.find("size_m"));
+  const PreparedCase prepared = prepare(parse_experiment(text, "ball.toml"));
+  std::filesystem::remove(file);
+  const Mesh& mesh = *prepared.body.tetrahedra.back();
+  ASSERT_GT(std::abs(volume(mesh, mesh.nodes) / volume(ball) - 1), 1e-5) << "other facets than the file's";
+  const Wrench weight = *std::get<Gravity>(prepared.loads.back()).wrench;
+  EXPECT_LE((weight.force - 1000 * volume(ball) * Vec3(1, -2, -9.81)).norm(), 1e-6 * weight.force.norm());
+  EXPECT_LE((weight.about - Vec3(0.1, 0.1, 0.1)).norm(), 1e-8);
+  Vec3 moments = Vec3::Zero();
+  double area = 0;
+  for (const FacetPart& p : parts_of(prepared.experiment.patches.front(), ball)) {
+    area += p.area.norm();
+    moments += p.area.norm() * p.centroid;
+  }
+  const Vec3 from = centroid(mesh, patch(mesh, "low")), force(1, 2, 3);
+  const auto shifted = about_true_patches(prepared, mesh, {{"low", force, Vec3::Zero()}});
+  EXPECT_LE((shifted[0].torque - (from - moments / area).cross(force)).norm(), 1e-7);
+  EXPECT_GT(shifted[0].torque.norm(), 1e-6);
 }
 
 struct Mistake {

@@ -95,9 +95,12 @@ TEST_F(VoxelReference, RowsBalanceAndPartsOfTheErrorAddUp) {
   EXPECT_EQ(coloured, 1) << "the reference on the true surface";
   ASSERT_FALSE(part.splits.empty()) << "the case asks for them";
   std::map<std::string, int> scalars;
+  EXPECT_GT(ball().body.chords, 1e-3) << "chords of a sphere";
   for (const ErrorSplit& s : part.splits) {
     EXPECT_TRUE(std::isfinite(s.total)) << s.measure;
     if (s.measure == "displacement_error") {
+      EXPECT_EQ(s.facets, ball().body.chords > 0.1 * s.total ? ball().body.chords : 0) << s.model;
+      EXPECT_GT(s.uncertainty, s.facets);
       EXPECT_LE(s.total, (s.model_error + s.discretisation_error + s.geometry_error) * (1 + 1e-12))
           << s.model << ": triangle inequality";
       continue;
