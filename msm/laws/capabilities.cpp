@@ -40,7 +40,8 @@ std::string together_lack(const MassSpringModel& model, Capability what) {
     case list_stiffness:
       return each_law_once(model) && springs ? "" : in_kernels;
     case cut_multigrid:
-      return averaged ? "" : "it has no averaged springs";
+      return averaged != (law_of<MeasuredCells>(model) != nullptr) ? ""
+                                                                   : "it has no averaged springs or measured cells";
     case nodal_pressures:
       return dispersion ? "" : "it has no momentum dispersion";
     case viscosity:
