@@ -11,7 +11,7 @@ namespace {
 using Part = Eigen::Ref<Eigen::MatrixXd>;
 using ConstPart = const Eigen::Ref<const Eigen::MatrixXd>&;
 
-constexpr Eigen::Index width = 12;  // columns that are eliminated together
+constexpr Eigen::Index group_width = 12;  // columns that are eliminated together
 
 DenseProduct<double> product(ConstPart a, ConstPart b, Part c) {
   return {c.rows(), c.cols(), a.cols(),        a.data(), a.outerStride(),
@@ -31,7 +31,7 @@ void subtract_transposed(ConstPart a, ConstPart b, Part c) {
 /// Calls act(first, number) for columns that are eliminated together.
 template <class Act>
 void each_group(Eigen::Index columns, const Act& act) {
-  for (Eigen::Index j = 0; j < columns; j += width) act(j, std::min(width, columns - j));
+  for (Eigen::Index j = 0; j < columns; j += group_width) act(j, std::min(group_width, columns - j));
 }
 
 /// Factors of the upper rows, which are square; the others follow.
@@ -88,7 +88,7 @@ void LayeredMatrix::solve(Eigen::MatrixXd& b) const {
     const Eigen::MatrixXd& L = columns_[l];
     Part own = of_layer(l);
     if (below_of(l) > 0) subtract(of_layer(l + 1), L.bottomRows(below_of(l)), own);
-    for (Eigen::Index end = L.cols(), j = (end - 1) / width * width; j >= 0; end = j, j -= width) {
+    for (Eigen::Index end = L.cols(), j = (end - 1) / group_width * group_width; j >= 0; end = j, j -= group_width) {
       const Eigen::Index n = end - j, after = L.cols() - end;
       Part here = own.middleCols(j, n);
       subtract(own.rightCols(after), L.block(end, j, after, n), here);

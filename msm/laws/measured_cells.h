@@ -35,7 +35,9 @@ inline constexpr int numbers_of_form = deformations_of_cell * (deformations_of_c
 struct MeasuredCells {
   /// What solvers, kernels and the time step use of this law.
   static constexpr LawTraits traits = {
-      "measured cells", Reach::cells, {Capability::cells_of_any_shape, Capability::cut_multigrid}};
+      "measured cells",
+      Reach::cells,
+      {Capability::cell_kernels, Capability::cells_of_any_shape, Capability::cut_multigrid}};
   /// Why it cannot what its traits say; nullptr: it can (law_traits.h).
   const char* lacks(Capability what) const;
 
