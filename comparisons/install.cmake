@@ -13,7 +13,7 @@ endforeach()
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/comparisons/experiments ${CMAKE_SOURCE_DIR}/meshes/geo
         DESTINATION share/springproof PATTERN *.cpp EXCLUDE)
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/comparisons/advise DESTINATION share/springproof
-        FILES_MATCHING PATTERN "*.csv" PATTERN "*.toml")
+        FILES_MATCHING PATTERN "*.csv" PATTERN "*.toml" PATTERN "*.txt")
 
 set(described ${CMAKE_CURRENT_BINARY_DIR}/described)
 file(MAKE_DIRECTORY ${described})

@@ -36,6 +36,7 @@ set(report_assets
     report_js=${report_dir}/report/page/stability.js
     report_js=${report_dir}/report/page/cost.js
     report_js=${report_dir}/report/page/splits.js
+    report_js=${report_dir}/report/page/measured.js
     report_js=${report_dir}/report/page/colours.js
     report_js=${report_dir}/report/page/pictures.js
     report_js=${report_dir}/report/page/viewer.js

@@ -1,4 +1,4 @@
-// The mean displacement of a patch, sampled at the same points for every discretisation.
+// The mean displacement and the turn of a patch, sampled at the same points for every discretisation.
 #pragma once
 
 #include <map>
@@ -22,5 +22,8 @@ std::vector<PatchSamples> samples_of_patches(const Mesh& mesh);
 
 /// mean_displacement.<patch>.x|y|z|magnitude [m]; `u` n x 3 at the points of all patches, one after the other.
 std::map<std::string, double> mean_displacements(const std::vector<PatchSamples>& patches, const NodalVectors& u);
+
+/// turn.<patch>.x|y|z [deg]: the vector of the rotation that is nearest to the patch's motion in the mean square.
+std::map<std::string, double> turns(const std::vector<PatchSamples>& patches, const NodalVectors& u);
 
 }  // namespace springproof

@@ -166,7 +166,40 @@ ModelFrequencies frequencies_of(const PreparedCase& prepared, const Lattice& lat
   return none;
 }
 
+/// By the axis along which most of a mode's motion is.
+std::map<std::string, double> by_axis(const ModeSet& modes, const Eigen::VectorXd& weights) {
+  std::map<std::string, double> lowest;
+  for (std::size_t i = 0; i < modes.shapes.size(); ++i) {
+    Eigen::Index axis = 0;
+    (weights.transpose() * modes.shapes[i].cwiseAbs2()).maxCoeff(&axis);
+    lowest.emplace(std::string("frequency.") + "xyz"[axis], modes.frequencies[i]);
+  }
+  return lowest;
+}
+
+constexpr int modes_for_axes = 3;
+
 }  // namespace
+
+std::map<std::string, double> lowest_frequencies(const PreparedCase& prepared, const Lattice& lattice,
+                                                 std::size_t number, const IsotropicMaterial& material) {
+  return by_axis(frequencies_of(prepared, lattice, number, 0, material, modes_for_axes).modes,
+                 nodal_volumes(*lattice.mesh));
+}
+
+std::map<std::string, double> lowest_frequencies(const PreparedCase& prepared, const Lattice& lattice,
+                                                 const std::string& element, const IsotropicMaterial& material) try {
+  fem::Request request = fem::request_of(prepared.experiment, material);
+  request.law = "linear";
+  request.loads = supports_of(prepared.experiment);
+  request.modes = modes_for_axes + modes_beside;
+  request.points = lattice.mesh->nodes;
+  request.grids = {{lattice.cells, element}};
+  const fem::Solution solved = solve_each(request).front();
+  return by_axis({solved.frequencies, solved.shapes}, nodal_volumes(*lattice.mesh));
+} catch (const std::runtime_error&) {  // as a grid without a result
+  return {};
+}
 
 std::vector<ReferenceRecord> records_of(const FrequencyTable& table) {
   std::vector<ReferenceRecord> records;

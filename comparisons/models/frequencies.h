@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -48,6 +49,15 @@ struct FrequencyTable {
   ModeSet shapes;                         ///< of the finest grid, at the nodes of the lattice's mesh; some more modes
   std::vector<ModelFrequencies> models;
 };
+
+/// frequency.x|y|z [Hz] of a model on a lattice, masses lumped: its lowest natural frequencies whose motion is mostly
+/// along an axis; empty: the model has no modes.
+std::map<std::string, double> lowest_frequencies(const PreparedCase& prepared, const Lattice& lattice,
+                                                 std::size_t number, const IsotropicMaterial& material);
+
+/// The same of finite elements on the cells of a block's lattice; empty: they have no result.
+std::map<std::string, double> lowest_frequencies(const PreparedCase& prepared, const Lattice& lattice,
+                                                 const std::string& element, const IsotropicMaterial& material);
 
 /// The reference as records of measures "frequency.1", "frequency.2", ... [Hz].
 std::vector<ReferenceRecord> records_of(const FrequencyTable& table);

@@ -9,6 +9,7 @@
 #include "comparisons/judge/measures.h"
 #include "comparisons/judge/wrinkles.h"
 #include "comparisons/models/external.h"
+#include "comparisons/models/frequencies.h"
 #include "comparisons/prepare/sampling.h"
 #include "comparisons/prepare/voxel_body.h"
 #include "comparisons/reference/reference_grids.h"
@@ -108,11 +109,16 @@ Stability stability_of(const Equilibrium& state, const Mesh& mesh, const MotionR
   return s;
 }
 
-/// One network of the model, solved and measured.
-ModelSample run_sample(const PreparedCase& prepared, const Lattice& lattice, const ModelParameters& parameters,
-                       const IsotropicMaterial& material, bool in_motion) {
+/// One network of a model, solved and measured.
+ModelSample run_sample(const PreparedCase& prepared, const Lattice& lattice, std::size_t number,
+                       const ModelParameters& parameters, const IsotropicMaterial& material) {
+  const bool in_motion = prepared.experiment.models[number].in_motion;
   const auto solve = prepared.experiment.cost ? solve_and_count : solve_network;
-  return measured(prepared, lattice, parameters, solve(prepared, lattice, parameters, material, in_motion), in_motion);
+  ModelSample sample =
+      measured(prepared, lattice, parameters, solve(prepared, lattice, parameters, material, in_motion), in_motion);
+  if (asked(prepared.experiment, "frequency") && sample.state.ok && !in_motion)
+    sample.scalars.merge(lowest_frequencies(prepared, lattice, number, material));
+  return sample;
 }
 
 }  // namespace
@@ -180,13 +186,12 @@ std::vector<ModelSample> run_samples(const PreparedCase& prepared, const Lattice
   std::vector<ModelSample> samples;
   ModelParameters parameters = prepared.models[number];
   if (whole_cubes) parameters.cut = false;
-  const bool in_motion = prepared.experiment.models[number].in_motion;
   for (int seed = 0; seed < prepared.models[number].seeds; ++seed, ++parameters.random.seed) {
     progress::phase(
         fmt::format("{} on {} cells{}", prepared.experiment.models[number].label, cells_text(lattice.cells, " x "),
                     parameters.seeds > 1 ? fmt::format(", network {} of {}", seed + 1, parameters.seeds) : ""));
     try {
-      samples.push_back(run_sample(prepared, lattice, parameters, material, in_motion));
+      samples.push_back(run_sample(prepared, lattice, number, parameters, material));
     } catch (const InputError&) {
       throw;
     } catch (const std::runtime_error& e) {  // the network cannot have this material's moduli

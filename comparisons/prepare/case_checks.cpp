@@ -41,7 +41,7 @@ void check_kinematics(const Experiment& e, const std::vector<ModelParameters>& m
 
 void check_mean_displacements(const Experiment& e, const std::vector<std::string>& patches) {
   const auto check = [&](const std::string& row, const SourceLocation& where) {
-    const std::string patch = patch_of_mean_displacement(row);
+    const std::string patch = patch_of_row(row);
     if (patch.empty() || std::find(patches.begin(), patches.end(), patch) != patches.end()) return;
     throw InputError(where, fmt::format("measure: the body has no patch '{}' (allowed: {}){}", patch,
                                         fmt::join(patches, ", "), did_you_mean(patch, patches)));

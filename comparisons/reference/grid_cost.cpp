@@ -8,7 +8,7 @@ namespace {
 // CPU seconds per unknown, as measured in the default run.  Assembled matrices: tetrahedra, and cubes without a
 // multigrid hierarchy.
 constexpr double matrix_free = 1.5e-5, with_matrices = 3e-5;
-constexpr double fem_step = 6e-5;                              // of a motion, per unknown and step
+constexpr double fem_step = 6e-6;                              // of a motion, per unknown and step
 constexpr double with_pressures = 1.6, pressures_above = 0.4;  // factor above this Poisson's ratio
 constexpr double start_up = 0.03;                              // of a run of the program
 constexpr double large_strain = 5;  // of all load steps and Newton steps, whose systems are solved roughly

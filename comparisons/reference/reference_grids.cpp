@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "comparisons/judge/judge.h"
 #include "comparisons/judge/measures.h"
@@ -96,6 +97,7 @@ double scale_of(const std::string& measure, const std::map<std::string, double>&
   const std::string kind = kind_of(measure);
   if (kind == "displacement" || kind == "mean_displacement") return body.displacement;
   const double strain = body.displacement / body.size;
+  if (kind == "turn") return strain * 180 / std::numbers::pi;
   if (kind == "volume_change") return strain;
   double force = body.force, stress = body.youngs_modulus * strain;
   for (const auto& [name, value] : values) {
@@ -172,6 +174,8 @@ std::map<std::string, double> field_measures(const PreparedCase& prepared, const
   const auto count = static_cast<Eigen::Index>(probes.size());
   auto values = scalar_measures(field, probes, u.topRows(count));
   values.merge(mean_displacements(prepared.samples.of_patches, u.bottomRows(u.rows() - count)));
+  if (wanted("turn", prepared.experiment.measures))
+    values.merge(turns(prepared.samples.of_patches, u.bottomRows(u.rows() - count)));
   return values;
 }
 

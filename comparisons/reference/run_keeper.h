@@ -13,10 +13,19 @@
 
 namespace springproof {
 
-/// Runs whose times are in proportion to what is expected of them: springs at rest and in motion, finite elements
-/// without and with an assembled matrix, and in motion.
-enum class RunKind { springs, springs_in_motion, matrix_free, assembled, finite_elements_in_motion };
-inline constexpr int run_kinds = 5;
+/// Runs whose times are in proportion to what is expected of them: springs at rest, at large strain, at random places,
+/// fitted to the patch test, and in motion; finite elements without and with an assembled matrix, and in motion.
+enum class RunKind {
+  springs,
+  springs_at_large_strain,
+  springs_at_random,
+  springs_fitted,
+  springs_in_motion,
+  matrix_free,
+  assembled,
+  finite_elements_in_motion
+};
+inline constexpr int run_kinds = 8;
 
 /// What a run is expected to take on one core [s].
 struct RunCost {

@@ -120,6 +120,8 @@ Json to_json(const CaseResult& result) {
   out.update({{"experiment", experiment},
               {"checks", result.checks},
               {"published", result.published},
+              {"validation", result.validation},
+              {"validated", result.validated},
               {"cautions", cautions(result)},
               {"notes", result.notes}});
   return out;

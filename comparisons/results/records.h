@@ -213,6 +213,41 @@ struct LatticeLimit {
   std::string instead;         ///< a model of the table that is stable there; empty: none is known
 };
 
+/// The rows behind measured values, of the first model and of elements on the same cells, under another load case or
+/// with another input.
+struct VariedRun {
+  std::string load_case;
+  std::string input;  ///< that was changed; empty: none
+  std::vector<Row> rows;
+  std::string message;  ///< why there are none
+};
+
+/// What an input, or an alternative to one, does to a value.
+struct InputShare {
+  std::string input;
+  double change = 0;         ///< by its uncertainty, in the unit of the value
+  bool alternative = false;  ///< no uncertainty, but another choice
+};
+
+/// A simulated value S beside a measured one D, by ASME V&V 20: E = S - D beside u_val, all in one unit; uncertainties
+/// are standard ones.
+struct ValidatedValue : RunKey {
+  std::string name, quantity, unit;
+  std::string load_case;  ///< "102 g − own weight"
+  bool fitted = false;    ///< an input was fitted to it: E says nothing
+  double measured = 0, u_measured = 0;
+  std::optional<double> simulated;  ///< the limit of the model's lattices
+  std::optional<double> u_numerical;
+  double u_input = 0;
+  std::optional<double> error;  ///< E
+  std::optional<double> u_val;
+  std::optional<double> ratio;       ///< |E| / u_val; empty: fitted, or unknown
+  std::optional<double> springs;     ///< model - finite elements on the same cells, the finest that both have
+  std::optional<double> resolution;  ///< finest lattice - limit
+  std::vector<InputShare> inputs;
+  std::string source, licence;
+};
+
 /// Results of the runs of a case, at one Poisson's ratio or at all of them.
 struct Part {
   std::vector<Run> runs;
@@ -225,6 +260,7 @@ struct Part {
   std::vector<Deformation> deformations;
   std::vector<CrackRecord> cracks;
   std::vector<LatticeLimit> limits;
+  std::vector<VariedRun> varied;
 };
 
 struct CaseResult : Part {
@@ -238,6 +274,8 @@ struct CaseResult : Part {
   std::map<std::string, std::string> made_of;  ///< of the models, by label: "springs", "a term per cell", ...
   std::vector<Check> checks;
   std::vector<PublishedRow> published;
+  std::vector<ValidatedValue> validation;
+  std::string validated;           ///< what `validation` says, in sentences
   std::vector<std::string> notes;  ///< what was repaired or left out of the body
 };
 

@@ -31,8 +31,13 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(CrackRecord, model, poisson_ratio, cells, shr
                                    released, directions, svg)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PublishedRow, model, poisson_ratio, cells, measure, unit, published, computed, where,
                                    remark)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(VariedRun, load_case, input, rows, message)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(InputShare, input, change, alternative)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ValidatedValue, model, poisson_ratio, cells, name, quantity, unit, load_case, fitted,
+                                   measured, u_measured, simulated, u_numerical, u_input, error, u_val, ratio, springs,
+                                   resolution, inputs, source, licence)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Part, runs, rows, references, pictures, lines, histories, splits, deformations,
-                                   cracks, limits)
+                                   cracks, limits, varied)
 
 NLOHMANN_JSON_SERIALIZE_ENUM(Verdict, {{Verdict::pass, "pass"},
                                        {Verdict::fail, "fail"},

@@ -38,6 +38,14 @@ void give_in_units_of_case(CaseResult& result) {
   for (ReferenceRecord& r : result.references) give(units, r.unit, r.values, r.value, r.uncertainty);
   for (Check& c : result.checks) give(units, c.unit, c.expected, c.computed, c.within, c.reference_uncertainty);
   for (PublishedRow& p : result.published) give(units, p.unit, p.published, p.computed);
+  for (ValidatedValue& v : result.validation) {
+    for (InputShare& share : v.inputs) {
+      std::string unit = v.unit;
+      give(units, unit, share.change);
+    }
+    give(units, v.unit, v.measured, v.u_measured, v.simulated, v.u_numerical, v.u_input, v.error, v.u_val, v.springs,
+         v.resolution);
+  }
   for (ErrorSplit& s : result.splits)
     give(units, s.unit, s.total, s.model_error, s.discretisation_error, s.geometry_error, s.uncertainty,
          s.voxel_uncertainty);

@@ -4,6 +4,7 @@
 #include "comparisons/judge/measures.h"
 #include "comparisons/models/external.h"
 #include "comparisons/models/external_points.h"
+#include "comparisons/models/frequencies.h"
 #include "comparisons/reference/reference_grids.h"
 #include "comparisons/reference/voxel_reference.h"
 #include "comparisons/results/picture.h"
@@ -12,6 +13,7 @@
 #include "comparisons/run/case_rows.h"
 #include "comparisons/run/cut_extrapolation.h"
 #include "comparisons/run/model_samples.h"
+#include "comparisons/run/varied_runs.h"
 #include "msm/statics/equilibrium.h"
 #include "problem/case_file/external.h"
 #include "problem/case_file/measures.h"
@@ -200,8 +202,10 @@ void add_fem(PartRun& run, std::size_t lattice) {
     run.part.runs.back().cells = here.cells;
     run.part.runs.back().filled = here.mesh->hexahedra.size();
     if (!s.ok) continue;
-    add_rows(run, lattice, name, run.part.runs.back().kinematics, {at_nodes(here, s.displacement)},
-             {measures_of(run.prepared, s)});
+    std::map<std::string, double> scalars = measures_of(run.prepared, s);
+    if (wanted("frequency", run.experiment().measures) && !run.experiment().body.is_voxels())
+      scalars.merge(lowest_frequencies(run.prepared, here, s.grid.element, run.material));
+    add_rows(run, lattice, name, run.part.runs.back().kinematics, {at_nodes(here, s.displacement)}, {scalars});
     save(run, lattice, name, sampled_field(here, s));
   }
 }
@@ -239,6 +243,7 @@ Part run_part(const PreparedCase& prepared, std::size_t material, const VtuOutpu
   }
   add_extrapolated(run);
   if (prepared.experiment.line) add_line_orders(prepared.experiment, run.part.rows);
+  run.part.varied = varied_runs(prepared.experiment);
   return std::move(run.part);
 }
 

@@ -14,11 +14,12 @@
 namespace springproof {
 namespace {
 
-// CPU seconds per unknown; of springs at rest as measured in the default run.
-constexpr double springs = 2.5e-6, springs_at_random = 3.5e-5;
-constexpr double spring_step = 2e-8;  // of a motion, per unknown and step
-constexpr double breaking = 1e-4;     // of a sample that dries: hundreds of equilibria
-constexpr double fit = 2.2e-6;        // of a patch-exact network, per node squared
+// CPU seconds per unknown, as measured on the shipped cases.
+constexpr double springs = 2.5e-6, springs_of_bodies = 1.2e-5, springs_at_random = 3.5e-5, springs_fitted = 4e-3;
+constexpr double large_strain = 20, near_incompressible = 0.025;  // factors; the second is divided by 1 - 2 nu
+constexpr double spring_step = 2e-8;                              // of a motion, per unknown and step
+constexpr double breaking = 1e-4;                                 // of a sample that dries: hundreds of equilibria
+constexpr double homogenisation = 0.1;                            // of a random network, whatever its size
 constexpr int reference_grids = 3;
 
 // Bodies of voxels before they are meshed.
@@ -47,17 +48,23 @@ class Runs {
         grid(unknowns(divided(finest, divisor), degree_of(element)), element[0] == 'p');
   }
 
+  /// On a lattice of so many unknowns and cells of this edge [m].
   RunCost model(const ModelChoice& choice, double unknowns, double edge) const {
     if (is_external(choice)) return {RunKind::springs, 0};
     const ModelParameters p = resolve(choice);
-    if (e_.fracture) return {RunKind::springs, breaking * e_.fracture->seeds * unknowns};
+    if (e_.fracture) return {RunKind::springs_at_random, breaking * e_.fracture->seeds * unknowns};
     if (choice.in_motion)
       return {RunKind::springs_in_motion, spring_step * steps_of(*e_.dynamics, material_, edge) * p.seeds * unknowns};
-    const bool at_random = p.row.topology == Topology::random;
-    double seconds = (at_random ? springs_at_random : springs) * p.seeds * unknowns * factor_;
     if (passes_patch_test(p.row) && e_.body.is_voxels())  // once for all parts
-      seconds += fit * std::pow(unknowns / 3, 2) / static_cast<double>(e_.materials.size());
-    return {RunKind::springs, seconds};
+      return {RunKind::springs_fitted, springs_fitted * unknowns / static_cast<double>(e_.materials.size())};
+    if (p.row.topology == Topology::random) {
+      if (p.node_density) unknowns *= *p.node_density * std::pow(edge, 3);
+      return {RunKind::springs_at_random, p.seeds * (homogenisation + springs_at_random * unknowns)};
+    }
+    if (e_.model_kinematics() == Kinematics::finite)
+      return {RunKind::springs_at_large_strain,
+              springs * unknowns * large_strain * (1 + near_incompressible / (1 - 2 * material_.poisson_ratio))};
+    return {RunKind::springs, (e_.body.is_voxels() ? springs_of_bodies : springs) * unknowns * factor_};
   }
 
   std::vector<RunCost> all;

@@ -16,6 +16,7 @@
 #include "comparisons/prepare/voxel_body.h"
 #include "comparisons/reference/reference_grids.h"
 #include "comparisons/results/records.h"
+#include "meshes/locate/locate.h"
 #include "meshes/mesher/mesher.h"
 #include "meshes/patches/select_patches.h"
 #include "meshes/volume.h"
@@ -193,7 +194,8 @@ void prepare_blocks(PreparedCase& prepared) {
 
 /// Samples the patches of the body itself, if their mean displacement is measured.
 void sample_patches(PreparedCase& prepared) {
-  if (!wanted("mean_displacement", prepared.experiment.measures)) return;
+  const std::vector<std::string>& measures = prepared.experiment.measures;
+  if (!wanted("mean_displacement", measures) && !wanted("turn", measures)) return;
   const bool voxels = prepared.experiment.body.is_voxels();
   prepared.samples.of_patches =
       samples_of_patches(voxels ? *prepared.body.tetrahedra.back() : *prepared.lattices[finest_lattice(prepared)].mesh);
@@ -220,6 +222,19 @@ void check_plane(const PreparedCase& prepared, const Lattice& lattice) {
                     -nearest));
 }
 
+/// @throws InputError for a mass that hangs on nothing.
+void check_masses(const Experiment& e, const Mesh& mesh) {
+  if (e.body.is_voxels()) return;  // whose cells may end below the surface
+  const Locator locator(mesh);
+  for (const AttachedMass& mass : e.masses)
+    for (const Vec3& X : mass.at)
+      if (!locator.find(X))
+        throw InputError({e.file.string(), 0, 0},
+                         fmt::format("mass '{}': at_m: the point ({:.6g}, {:.6g}, {:.6g}) m lies outside the body "
+                                     "(allowed: a point of the body, of {:.6g} x {:.6g} x {:.6g} m)",
+                                     mass.name, X[0], X[1], X[2], e.body.size[0], e.body.size[1], e.body.size[2]));
+}
+
 /// Checks patches, loads, models and measures of the case on one lattice.
 void try_lattice(PreparedCase& prepared, const Lattice& lattice) {
   const Experiment& e = prepared.experiment;
@@ -227,6 +242,7 @@ void try_lattice(PreparedCase& prepared, const Lattice& lattice) {
   std::vector<std::string> patches;
   for (const Patch& p : mesh.patches) patches.push_back(p.name);
   check_patches(e, patches);
+  check_masses(e, mesh);
   check_mean_displacements(e, patches);
   check_plane(prepared, lattice);
   prepared.sharing = patches_sharing_supports(prepared.loads, mesh, e.model_kinematics());

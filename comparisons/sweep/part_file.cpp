@@ -7,7 +7,7 @@
 namespace springproof {
 
 // File format: this heading (problem/files/checked_file.h), then the stamp and the part.
-static constexpr std::string_view part_heading = "springproof part 3 ";
+static constexpr std::string_view part_heading = "springproof part 4 ";
 
 void save_part(const std::filesystem::path& file, const std::string& stamp, const Part& part) {
   write_checked(file, part_heading, cbor({{"stamp", stamp}, {"part", part}}));

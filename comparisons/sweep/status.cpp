@@ -23,6 +23,12 @@ constexpr const char clear_line[] = "\r\x1b[K";
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
+/// Of the first status of the program: a bar goes on where the one before has ended.
+Clock::time_point first_begun() {
+  static const Clock::time_point begun = Clock::now();
+  return begun;
+}
+
 /// Columns of the terminal; 80 if unknown.
 std::size_t terminal_width() {
   winsize size{};
@@ -112,6 +118,7 @@ std::string phase_line(const Activity& a, std::optional<double> left) {
 Status::Status(bool quiet, std::function<std::optional<double>()> left)
     : quiet_(quiet), terminal_(isatty(STDERR_FILENO)), left_(std::move(left)) {
   if (quiet_) return;
+  first_begun();
   if (terminal_) clear_on_death();
   thread_ = std::thread([this] {
     std::unique_lock lock(mutex_);
@@ -146,7 +153,7 @@ void Status::show() {
     e.phase_is_said = true;
     to_stderr("{}\n", phase_line(running.back(), left));
   }
-  if (terminal_) rewrite(live_line(running, {seconds_since(begun_), left}, terminal_width() - 1));
+  if (terminal_) rewrite(live_line(running, {seconds_since(first_begun()), left}, terminal_width() - 1));
 }
 
 void Status::rewrite(const std::string& live_line) {

@@ -62,7 +62,6 @@ class Status {
 
   const bool quiet_, terminal_;
   const std::function<std::optional<double>()> left_;
-  const std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
   std::mutex mutex_;
   std::condition_variable ended_;
   bool end_ = false, line_is_shown_ = false;

@@ -95,10 +95,24 @@ Sweep planned(const std::vector<Experiment>& cases, const SuiteOptions& options)
 
 namespace {
 
+int jobs_of(const SuiteOptions& options) {
+  return options.jobs > 0 ? options.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+}
+
+/// The parts of the cases that are not meshed yet.
+std::vector<std::vector<RunCost>> unmeshed(const std::vector<Experiment>& cases) {
+  std::vector<std::vector<RunCost>> parts;
+  for (const Experiment& e : cases)
+    for (const IsotropicMaterial& material : e.materials)
+      parts.push_back({{RunKind::springs, unmeshed_seconds(e, material)}});
+  return parts;
+}
+
 /// The cases prepared before an interrupt, which also ends the mesher and is said.
-std::vector<PreparedCase> prepare_all(const std::vector<Experiment>& cases, bool quiet) {
+std::vector<PreparedCase> prepare_all(const std::vector<Experiment>& cases, const SuiteOptions& options) {
   std::vector<PreparedCase> prepared;
-  Status status(quiet);
+  const TimeLeft time_left(unmeshed(cases), jobs_of(options));
+  Status status(options.quiet, [&] { return time_left.at(0); });
   for (const Experiment& e : cases) try {
       const Status::Working working(status, case_name(e.file));
       if (!children_interrupted()) prepared.push_back(prepare(e));
@@ -155,7 +169,7 @@ class Progress {
 
   void ran(std::size_t task, const RunCost& expected, std::optional<double> took) {
     time_left_.ran(task, expected, took, now());
-    if (took && expected.kind != RunKind::springs) say_how_long();
+    if (took && expected.kind >= RunKind::matrix_free) say_how_long();
   }
 
   void known_so_far(std::size_t task, const RunKeeper::Words& words) {
@@ -212,8 +226,7 @@ std::optional<Part> kept_part(const Task& task) try {
 }
 
 void run_tasks(std::vector<Task>& tasks, const SuiteOptions& options) {
-  const int jobs =
-      options.jobs > 0 ? options.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  const int jobs = jobs_of(options);
   const std::vector<std::vector<RunCost>> runs = expected(tasks);
   std::vector<double> seconds;
   for (const std::vector<RunCost>& of_part : runs) seconds.push_back(sum_of(of_part));
@@ -298,7 +311,7 @@ int run_shard(const std::vector<fs::path>& files, const SuiteOptions& options) {
     const std::vector<PlannedPart>& parts = case_of_key(sweep, key_of(e.file)).parts;
     return std::none_of(parts.begin(), parts.end(), [&](const PlannedPart& p) { return p.shard == shard; });
   });
-  const std::vector<PreparedCase> prepared = prepare_all(cases, options.quiet);
+  const std::vector<PreparedCase> prepared = prepare_all(cases, options);
   if (children_interrupted()) return interrupted_status;
   warn_of_limits(prepared);
   for (const PreparedCase& p : prepared) save_meshed(options.out, key_of(p.experiment.file), case_of(p));
@@ -311,7 +324,7 @@ int run_shard(const std::vector<fs::path>& files, const SuiteOptions& options) {
 
 int run_all(const std::vector<fs::path>& files, const SuiteOptions& options) {
   const std::vector<Experiment> cases = read_all(files, options);
-  const std::vector<PreparedCase> prepared = prepare_all(cases, options.quiet);
+  const std::vector<PreparedCase> prepared = prepare_all(cases, options);
   if (children_interrupted()) return interrupted_status;
   warn_of_limits(prepared);
   require_writable(options.out);

@@ -13,6 +13,7 @@
 
 #include "comparisons/judge/calibration.h"
 #include "comparisons/judge/judge.h"
+#include "comparisons/judge/validation.h"
 #include "comparisons/reference/vtu_output.h"
 #include "comparisons/report/gltf.h"
 #include "comparisons/report/headline.h"
@@ -115,12 +116,14 @@ void append(const Part& from, Part& to) {
   append(from.deformations, to.deformations);
   append(from.cracks, to.cracks);
   append(from.limits, to.limits);
+  append(from.varied, to.varied);
 }
 
 bool write_results(std::vector<CaseResult> results, const std::string& libraries, const ResultsChoice& choice) {
   const fs::path& out = choice.out;
   if (!choice.live_page.empty()) write_file(out / "live.html", text_of_file(choice.live_page));
   for (CaseResult& r : results) {
+    validate(r);
     judge(r);
     if (choice.vtu) write_series(r, out / "vtu" / key_of(r.experiment.file));
     if (choice.gltf) write_gltf(r, out / "gltf" / key_of(r.experiment.file));
@@ -135,6 +138,7 @@ bool write_results(std::vector<CaseResult> results, const std::string& libraries
   write_crack_pictures(results, out);
   const Headline h = headline(results);
   write_report(out / "report.html", h, doc, pictures);
+  for (const CaseResult& r : results) to_stdout("{}", validation_table(r));
   to_stdout("{}{}report: {}\n", terminal_text(h, choice.verbose), calibration_table(known),
             (out / "report.html").string());
   return success(h);

@@ -91,7 +91,7 @@ KillingSpace::KillingSpace(const NodalVectors& X, double spacing) : box_(X.rows(
         eigen.vectors.rightCols(kept) * eigen.values.tail(kept).cwiseSqrt().cwiseInverse().asDiagonal();
     for (const int n : nodes) {
       box_[n] = static_cast<int>(p);
-      basis_[n] = killing_tensors((X.row(n).transpose() - middle) / width) * combined;
+      basis_[n] = (killing_tensors((X.row(n).transpose() - middle) / width) * combined).cast<float>();
     }
     first_.push_back(unknowns_);
     unknowns_ += static_cast<int>(kept);
@@ -106,8 +106,8 @@ void KillingSpace::factor(const std::vector<PatchColumn>& columns, const Eigen::
     if (box_[i] == box_[j]) continue;  // not seen
     if (box_[i] < box_[j]) std::swap(i, j);
     const double w = std::sqrt(W[static_cast<Eigen::Index>(s)]);
-    const Eigen::VectorXd at_i = w * (basis_[i].transpose() * columns[s].column);
-    const Eigen::VectorXd at_j = w * (basis_[j].transpose() * columns[s].column);
+    const Eigen::VectorXd at_i = w * (basis_[i].transpose().cast<double>() * columns[s].column);
+    const Eigen::VectorXd at_j = w * (basis_[j].transpose().cast<double>() * columns[s].column);
     A.block(first(i), first(i), at_i.size(), at_i.size()).selfadjointView<Eigen::Lower>().rankUpdate(at_i);
     A.block(first(j), first(j), at_j.size(), at_j.size()).selfadjointView<Eigen::Lower>().rankUpdate(at_j);
     A.block(first(i), first(j), at_i.size(), at_j.size()).noalias() -= at_i * at_j.transpose();
@@ -116,20 +116,21 @@ void KillingSpace::factor(const std::vector<PatchColumn>& columns, const Eigen::
     const Eigen::Index size = basis_[n].cols(), at = first(static_cast<int>(n));
     A.block(at, at, size, size)
         .selfadjointView<Eigen::Lower>()
-        .rankUpdate(basis_[n].transpose(), D[patch_moments * static_cast<Eigen::Index>(n)]);
+        .rankUpdate(basis_[n].transpose().cast<double>(), D[patch_moments * static_cast<Eigen::Index>(n)]);
   }
-  factor_.compute(A);
+  factor_ = A.llt().matrixL().toDenseMatrix().cast<float>();
 }
 
-void KillingSpace::add(const Eigen::VectorXd& r, Eigen::VectorXd& z) const {
+void KillingSpace::add(const Eigen::VectorXf& r, Eigen::VectorXf& z) const {
   if (unknowns_ == 0) return;
-  Eigen::VectorXd c = Eigen::VectorXd::Zero(unknowns_);
+  Eigen::VectorXf c = Eigen::VectorXf::Zero(unknowns_);
   const auto part = [&](std::size_t n) { return c.segment(first(static_cast<int>(n)), basis_[n].cols()); };
   for (std::size_t n = 0; n < basis_.size(); ++n)
-    part(n) += basis_[n].transpose() * r.segment<patch_moments>(patch_moments * static_cast<Eigen::Index>(n));
-  c = factor_.solve(c).eval();
+    part(n).noalias() += basis_[n].transpose() * r.segment<patch_moments>(patch_moments * static_cast<Eigen::Index>(n));
+  factor_.triangularView<Eigen::Lower>().solveInPlace(c);
+  factor_.triangularView<Eigen::Lower>().transpose().solveInPlace(c);
   for (std::size_t n = 0; n < basis_.size(); ++n)
-    z.segment<patch_moments>(patch_moments * static_cast<Eigen::Index>(n)) += basis_[n] * part(n);
+    z.segment<patch_moments>(patch_moments * static_cast<Eigen::Index>(n)).noalias() += basis_[n] * part(n);
 }
 
 }  // namespace springproof

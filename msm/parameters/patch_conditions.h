@@ -41,17 +41,17 @@ class KillingSpace {
   KillingSpace(const NodalVectors& X, double spacing);
   /// Factors the operator in the space.
   void factor(const std::vector<PatchColumn>& columns, const Eigen::VectorXd& W, const Eigen::VectorXd& D);
-  /// z += the correction for the residual r.
-  void add(const Eigen::VectorXd& r, Eigen::VectorXd& z) const;
+  /// z += the correction for the residual r, in single precision.
+  void add(const Eigen::VectorXf& r, Eigen::VectorXf& z) const;
 
  private:
   int first(int node) const { return first_[box_[node]]; }
 
   std::vector<int> box_;                ///< per node
   std::vector<int> first_;              ///< per box: the first of its unknowns
-  std::vector<Eigen::MatrixXd> basis_;  ///< per node: conditions x unknowns of its box
+  std::vector<Eigen::MatrixXf> basis_;  ///< per node: conditions x unknowns of its box
   int unknowns_ = 0;
-  Eigen::LLT<Eigen::MatrixXd> factor_;
+  Eigen::MatrixXf factor_;  ///< Cholesky's, its lower triangle
 };
 
 }  // namespace springproof

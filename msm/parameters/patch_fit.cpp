@@ -23,6 +23,8 @@ constexpr double barrier = 0.3;         // mu
 constexpr double met = 1e-6, largest_unmet = 0.03;
 constexpr int most_steps = 60, most_iterations = 3000;
 using MomentBlock = Eigen::Matrix<double, patch_moments, patch_moments>;
+using MomentBlockF = Eigen::Matrix<float, patch_moments, patch_moments>;
+using PatchMomentsF = Eigen::Matrix<float, patch_moments, 1>;
 
 /// The conditions of a node in a vector of all.
 auto at(Eigen::VectorXd& v, int node) { return v.segment<patch_moments>(patch_moments * node); }
@@ -108,28 +110,40 @@ struct PatchDual {
     return block;
   }
 
-  /// Solves (B W B^T + slack D) d = r, W = dt / d(B^T y).
+  /// Solves (B W B^T + slack D) d = r, W = dt / d(B^T y), roughly: the matrix is kept in single precision.
   void solve(const Eigen::VectorXd& t, const Eigen::VectorXd& r, double tolerance, Eigen::VectorXd& d) {
     const Eigen::VectorXd W = t.array().square() / (t.array().square() + barrier * barrier), D = weight();
-    std::vector<MomentBlock> inverse = blocks(W);
+    std::vector<PatchMomentsF> root(column.size());  // columns of B W^(1/2)
+    for (std::size_t s = 0; s < column.size(); ++s)
+      root[s] = (std::sqrt(W[static_cast<Eigen::Index>(s)]) * column[s].column).cast<float>();
+    std::vector<MomentBlock> block = blocks(W);
+    std::vector<MomentBlockF> inverse(block.size());
     for (int n = 0; n < network.nodes(); ++n) {
-      inverse[n].diagonal() += at(D, n);
-      inverse[n] = inverse[n].ldlt().solve(MomentBlock::Identity()).eval();
+      block[n].diagonal() += at(D, n);
+      inverse[n] = block[n].ldlt().solve(MomentBlock::Identity()).cast<float>();
     }
     smooth.factor(column, W, D);
+    Eigen::VectorXf single, sum;
     const Operator normal = [&](const Eigen::VectorXd& y, Eigen::VectorXd& out) {
-      out = D.cwiseProduct(y);
+      single = y.cast<float>();
+      sum.setZero(y.size());
       for (std::size_t s = 0; s < column.size(); ++s) {
-        const auto& [i, j, c] = column[s];
-        const PatchMoments force = W[static_cast<Eigen::Index>(s)] * c.dot(at(y, i) - at(y, j)) * c;
-        at(out, i) += force;
-        at(out, j) -= force;
+        const auto i = single.segment<patch_moments>(patch_moments * column[s].i);
+        const auto j = single.segment<patch_moments>(patch_moments * column[s].j);
+        const PatchMomentsF force = root[s].dot(i - j) * root[s];
+        sum.segment<patch_moments>(patch_moments * column[s].i) += force;
+        sum.segment<patch_moments>(patch_moments * column[s].j) -= force;
       }
+      out = sum.cast<double>() + D.cwiseProduct(y);
     };
     const Operator precondition = [&](const Eigen::VectorXd& in, Eigen::VectorXd& out) {
-      out.resize(in.size());
-      for (int n = 0; n < network.nodes(); ++n) at(out, n) = inverse[n] * at(in, n);
-      smooth.add(in, out);
+      single = in.cast<float>();
+      sum.resize(in.size());
+      for (int n = 0; n < network.nodes(); ++n)
+        sum.segment<patch_moments>(patch_moments * n).noalias() =
+            inverse[n] * single.segment<patch_moments>(patch_moments * n);
+      smooth.add(single, sum);
+      out = sum.cast<double>();
     };
     d = Eigen::VectorXd::Zero(r.size());
     conjugate_gradients(normal, precondition, r, tolerance, most_iterations, d);
@@ -165,7 +179,7 @@ void minimise(PatchDual& dual, double tolerance, Eigen::VectorXd& y, Eigen::Vect
     const double size = gradient.norm() / of_face / std::sqrt(dual.network.nodes());
     progress::detail(fmt::format("fitting the springs' constants: {:.0e} of the conditions unmet", size));
     if (size < tolerance) return;
-    dual.solve(t, -gradient, std::clamp(size, 1e-3, 1e-1), d);
+    dual.solve(t, -gradient, std::clamp(std::max(size, tolerance / size / 3), 1e-3, 1e-1), d);
     const double slope = gradient.dot(d);
     bool lower = false;
     for (double step = 1; step > 1e-4 && !lower; step /= 2) {

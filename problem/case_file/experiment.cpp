@@ -223,7 +223,7 @@ void keep_grids_even(const TomlTable& document, Experiment& experiment) {
     refuse(*grading, "would move the border of a [[patch]], which is a line of the grid", "1, beside a [[patch]]");
 }
 
-Experiment read_document(const TomlTable& document, Experiment experiment) {
+Experiment read_tables(const TomlTable& document, Experiment experiment) {
   if (const auto cite = document.find("cite")) experiment.cite = as_text(*cite);
   if (const auto what = document.find("what")) experiment.what = as_text(*what);
   if (const auto name = document.find("kinematics")) experiment.kinematics = as_choice(*name, kinematics_names());
@@ -255,6 +255,7 @@ Experiment read_document(const TomlTable& document, Experiment experiment) {
   read_compare(document, experiment);
   check_loads(experiment);
   if (experiment.reference.cells[0] > 0) check_reference_cells(document.at("reference"), experiment);
+  read_measured(document, experiment);
   read_expectations(document, experiment);
   read_published(document, experiment);
   return experiment;
@@ -283,6 +284,8 @@ std::string to_string(Source source) {
       return "extrapolated FEM";
     case Source::published:
       return "published";
+    case Source::measured:
+      return "measured";
     case Source::regression:
       return "regression";
   }
@@ -306,9 +309,19 @@ Experiment parse_experiment(const std::string& text, const std::filesystem::path
   }
   if (document.empty())
     throw InputError({file.string(), 0, 0}, "the case file is empty (needed: [body], [material], [[load]])");
+  return read_document(document, experiment);
+}
+
+Experiment read_document(const toml::table& document, const Experiment& of) {
+  Experiment experiment;
+  experiment.file = of.file;
+  experiment.name = of.name;
+  experiment.folder = of.folder;
+  experiment.text = of.text;
+  const std::string file = of.file.string();
   if (const toml::node* units = document.get("units"))
-    experiment.units = as_choice({units, "units", file.string()}, {"m", "mm"}) == "mm" ? Units::mm : Units::m;
-  return read_document(TomlTable({&document, "", file.string(), experiment.units}, keys_of("")), std::move(experiment));
+    experiment.units = as_choice({units, "units", file}, {"m", "mm"}) == "mm" ? Units::mm : Units::m;
+  return read_tables(TomlTable({&document, "", file, experiment.units}, keys_of("")), std::move(experiment));
 }
 
 Experiment read_experiment(const std::filesystem::path& file) {

@@ -14,6 +14,7 @@
 #include "problem/fracture.h"
 #include "problem/loads.h"
 #include "problem/material.h"
+#include "problem/measured.h"
 #include "problem/model_choice.h"
 #include "problem/patch_rule.h"
 #include "problem/plane.h"
@@ -83,7 +84,7 @@ struct MotionChoice {
   SourceLocation mass_where;        ///< of mass_consistency
 };
 
-enum class Source { analytic, extrapolated_fem, published, regression };
+enum class Source { analytic, extrapolated_fem, published, measured, regression };
 std::string to_string(Source source);
 
 /// An expected value of a measure; it decides the verdict of the case.
@@ -152,7 +153,11 @@ struct Experiment {
   ReferenceChoice reference;
   std::vector<Expectation> expectations;
   std::vector<PublishedValue> published;
-  std::string text;  ///< the file as read
+  std::vector<LoadCase> load_cases;  ///< beside measured values: the first is the case as written
+  std::vector<UncertainInput> inputs;
+  std::vector<MeasuredValue> measured;  ///< that the first of `models` is judged by
+  std::vector<std::string> left_out;    ///< what was measured too, and is not compared
+  std::string text;                     ///< the file as read
 
   Kinematics model_kinematics() const { return kinematics == "linear" ? Kinematics::linear : Kinematics::finite; }
 };

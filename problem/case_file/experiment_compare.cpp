@@ -137,23 +137,32 @@ bool asks_for(const Experiment& experiment, const std::string& measure) {
   return std::find(experiment.measures.begin(), experiment.measures.end(), measure) != experiment.measures.end();
 }
 
-/// Whether it is a row of mean_displacement.  Whether the body has its patch is known only once it is meshed.
-bool is_mean_displacement(const std::string& row) {
-  const std::string patch = patch_of_mean_displacement(row);
+/// Whether it is a row of a measure of patches.  Whether the body has its patch is known only once it is meshed.
+bool is_of_patch(const std::string& row) {
+  const std::string patch = patch_of_row(row);
+  const bool turn = row.starts_with("turn.");
   const auto components = {".x", ".y", ".z", ".magnitude"};
-  return !patch.empty() &&
+  return !patch.empty() && !(turn && row.ends_with(".magnitude")) &&
          std::any_of(components.begin(), components.end(), [&](const char* c) { return row.ends_with(patch + c); });
 }
 
+}  // namespace
+
 std::string read_row_name(const TomlValue& value, const Experiment& experiment) {
-  if (const auto* text = value.node->as_string();
-      text && asks_for(experiment, "mean_displacement") && is_mean_displacement(text->get()))
-    return text->get();
+  if (const auto* text = value.node->as_string(); text && is_of_patch(text->get()))
+    if (asks_for(experiment, measure_of(text->get())->name)) return text->get();
   std::vector<std::string> rows;
   for (const std::string& measure : experiment.measures)
     for (const std::string& row : rows_of_measure(measure, experiment)) rows.push_back(row);
   return as_choice(value, rows);
 }
+
+double as_number_of(const std::string& measure, TomlValue value, const Range& range) {
+  value.in_si = unit_in(value.units, unit_of(measure)).in_si;
+  return as_number(value, range);
+}
+
+namespace {
 
 std::string read_judged_model(const TomlValue& value, const Experiment& experiment) {
   std::vector<std::string> labels;
@@ -176,14 +185,8 @@ Cells read_row_cells(const TomlValue& value, const std::string& model, const Exp
          fmt::format("{}", fmt::join(allowed, ", ")));
 }
 
-/// A number in the unit of a measure.
-double as_number_of(const std::string& measure, TomlValue value, const Range& range = any_number) {
-  value.in_si = unit_in(value.units, unit_of(measure)).in_si;
-  return as_number(value, range);
-}
-
 Source read_source(const TomlValue& value) {
-  const std::vector<Source> sources = {Source::analytic, Source::extrapolated_fem, Source::published,
+  const std::vector<Source> sources = {Source::analytic, Source::extrapolated_fem, Source::published, Source::measured,
                                        Source::regression};
   std::vector<std::string> names;
   for (const Source source : sources) names.push_back(to_string(source));
@@ -218,6 +221,9 @@ Expectation read_expectation(const TomlValue& value, const Experiment& experimen
   if (const auto cells = table.find("cells")) expect.cells = read_row_cells(*cells, expect.model, experiment);
   expect.measure = read_row_name(table.at("measure"), experiment);
   expect.source = read_source(table.at("source"));
+  if (expect.measure.starts_with("measured.") && expect.model != experiment.models.front().label)
+    refuse(table.at("model"), fmt::format("'{}' is not judged by what was measured", expect.model),
+           fmt::format("the first model, {}", experiment.models.front().label));
   if (expect.measure.starts_with("stress.") && !is_fem(expect.model))
     refuse(table.at("measure"), fmt::format("'{}' is not known of '{}'", expect.measure, expect.model),
            "a stress of the finite element results alone");

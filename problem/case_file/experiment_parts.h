@@ -56,4 +56,17 @@ void read_compare(const TomlTable& document, Experiment& experiment);
 void read_expectations(const TomlTable& document, Experiment& experiment);
 void read_published(const TomlTable& document, Experiment& experiment);
 
+/// The name of a row that the case's measures give.
+std::string read_row_name(const TomlValue& value, const Experiment& experiment);
+
+/// A number in the unit of a measure.
+double as_number_of(const std::string& measure, TomlValue value, const Range& range = any_number);
+
+/// [measured], and [[load_case]] and [[input]] beside it; all but what is expected and printed must have been read.
+void read_measured(const TomlTable& document, Experiment& experiment);
+
+/// A case file's content, which need not be what the file of `experiment` holds; file and text are those of it.
+/// @throws InputError as read_experiment
+Experiment read_document(const toml::table& document, const Experiment& experiment);
+
 }  // namespace springproof

@@ -38,6 +38,9 @@ constexpr Key file_keys[] = {
   {"reference",  "how finite elements compute the reference",       "a table",                                     "three grids of q2, of voxels p2", ""},
   {"expect",     "values that decide the exit status",              "tables headed [[expect]]",                    "none", ""},
   {"published",  "values printed beside ours",                      "tables headed [[published]]",                 "none", ""},
+  {"measured",   "what was measured of the body",                   "tables headed [[measured]]",                  "none", ""},
+  {"load_case",  "loads under which it was measured",               "tables headed [[load_case]]",                 "the case as written", ""},
+  {"input",      "inputs that are uncertain",                       "tables headed [[input]]",                     "none", ""},
 };
 
 constexpr Key body_keys[] = {
@@ -215,7 +218,7 @@ constexpr Key reference_keys[] = {
 constexpr Key expect_keys[] = {
   {"model",           "whose value is judged",                          "a model of [compare], or fem, fem_q1, ...",          required,               "\"hybmss\""},
   {"measure",         "a name of results.csv",                          "the name of a row",                                  required,               "\"displacement_error\""},
-  {"source",          "where the expected value is from",               "analytic, extrapolated FEM, published, regression",  required,               "\"analytic\""},
+  {"source",          "where the expected value is from",               "analytic, extrapolated FEM, published, measured, regression",  required,               "\"analytic\""},
   {"poisson_ratio",   "at which it is judged",                          "a finite number, one of the case's",                 "at each", "0.25"},
   {"cells",           "at which it is judged",                          "[nx, ny, nz], integers from 1 to 1000",              "at each", "[12, 2, 2]"},
   {"value",           "the expected value, in the unit of the measure", "a finite number",                                    "the reference's, of extrapolated FEM", "0"},
@@ -233,6 +236,37 @@ constexpr Key published_keys[] = {
   {"where",         "where it is printed",                    "table or figure",                       required,  "\"Table 3\""},
   {"cells",         "with which it was computed",             "[nx, ny, nz], integers from 1 to 1000", "none",    "[10, 10, 10]"},
   {"remark",        "why ours differs",                       "a string",                              "none",    "\"The reference was coarser.\""},
+};
+
+constexpr Key measured_keys[] = {
+  {"source",   "where the values are from",                      "a string",                                                  required, "\"our laboratory, 3 May 2026\""},
+  {"licence",  "under which they may be used",                   "a string",                                                  required, "\"CC BY 4.0\""},
+  {"values",   "the values",                                     "a list of { name, quantity, value, u }",                    required, "[{ name = \"sag\", quantity = \"displacement.tip.z\", value = -0.0108, u = 3e-4 }]"},
+  {"left_out", "what was measured too, and is not compared",     "a string",                                                  "none",   "\"creep\""},
+};
+
+constexpr Key measured_value_keys[] = {
+  {"name",      "of its row, measured.NAME",                             "a name",                                    required, "\"sag\""},
+  {"quantity",  "what was measured: a name of results.csv",                       "the name of a row",                         required, "\"displacement.tip.z\""},
+  {"value",     "in its unit",                                                    "a finite number",                           required, "-0.0108"},
+  {"u",         "its standard uncertainty",                                       above_0,                                     required, "3e-4"},
+  {"arm_m",     "of a mean_displacement: from the middle of the patch to the marker", a_vector,       "0",      "[0, 0, 0.007]"},
+  {"load_case", "under which loads",                                              "the name of a [[load_case]]",               "the first", "\"52 g\""},
+  {"minus",     "whose value is subtracted",                                      "the name of a [[load_case]]",               "none",   "\"own weight\""},
+  {"use",       "fit: an input was fitted to it",                                 "fit, predict",                              "predict", "\"fit\""},
+};
+
+constexpr Key load_case_keys[] = {
+  {"name", "its name",                                          "a name",                                     required,                   "\"own weight\""},
+  {"with", "what is changed; [] leaves out", "keys of the case with other values",         "none, of the first alone", "{ mass = [] }"},
+};
+
+constexpr Key input_keys[] = {
+  {"name",   "its name",                                             "a name",                                      required,         "\"thickness\""},
+  {"of",     "the number, or several that change together",          "a key as written here, body.size_m[2], or a list of such", "with `u`", "\"body.size_m[2]\""},
+  {"u",      "its standard uncertainty, up or down",                 "a finite number",                             "with `of`",      "3e-4"},
+  {"with",   "instead: a choice that is as good",                    "keys of the case with other values",          "none",           "{ kinematics = \"neo_hooke\" }"},
+  {"fitted", "it was fitted to the value with use = \"fit\"",        a_flag,                                        "false",          "true"},
 };
 
 constexpr KeyTable tables[] = {
@@ -261,6 +295,10 @@ constexpr KeyTable tables[] = {
   {"line",                       "[line]",                           "In a case of one material and one point force, under kinematics = \"linear\".", line_keys},
   {"expect",                     "[[expect]]",                       "",                                                            expect_keys},
   {"published",                  "[[published]]",                    "",                                                            published_keys},
+  {"measured",                   "[[measured]]",                     "Values of the body itself, with standard uncertainties; the first model is judged by them (`measured.NAME` = \\|E\\|/u_val).", measured_keys},
+  {"measured.values",            "",                                 "",                                                            measured_value_keys},
+  {"load_case",                  "[[load_case]]",                    "",                                                            load_case_keys},
+  {"input",                      "[[input]]",                        "The first model runs once with each, on its coarsest lattice.", input_keys},
   {"external",                   "[[external]]",                     "Displacements by any program ([engines](engines.md#any-program-beside-the-models)).", external_keys},
   {"external.files",             "",                                 "",                                                            external_file_keys},
   {"dynamics",                   "[dynamics]",                       "Under any kinematics but \"linear\" ([motion](motion.md)). Each model is computed twice: its equilibrium, and its state after `duration_s`, labelled `NAME in motion`.",  dynamics_keys},

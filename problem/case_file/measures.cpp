@@ -12,7 +12,7 @@ void add_vector_rows(const std::string& prefix, std::vector<std::string>& rows) 
   for (const char* component : {".x", ".y", ".z", ".magnitude"}) rows.push_back(prefix + component);
 }
 
-const std::string mean_displacement = "mean_displacement.";
+const std::string mean_displacement = "mean_displacement.", turn = "turn.";
 
 /// Whether the load prescribes a displacement other than zero.
 bool moves(const Load& load) {
@@ -44,14 +44,33 @@ std::vector<std::string> reaction_rows(const Experiment& experiment) {
   return rows;
 }
 
-/// Rows for the patches named in the case file.
-std::vector<std::string> mean_displacement_rows(const Experiment& experiment) {
+/// Patches named in the case file.
+std::set<std::string> named_patches(const Experiment& experiment) {
   std::set<std::string> patches;
   for (const Load& load : experiment.loads)
     if (const std::string* on = patch_of(load)) patches.insert(*on);
   for (const PatchRule& rule : experiment.patches) patches.insert(rule.name);
+  return patches;
+}
+
+std::vector<std::string> mean_displacement_rows(const Experiment& experiment) {
   std::vector<std::string> rows;
-  for (const std::string& patch : patches) add_vector_rows(mean_displacement + patch, rows);
+  for (const std::string& patch : named_patches(experiment)) add_vector_rows(mean_displacement + patch, rows);
+  return rows;
+}
+
+std::vector<std::string> turn_rows(const Experiment& experiment) {
+  std::vector<std::string> rows;
+  for (const std::string& patch : named_patches(experiment))
+    for (const char* axis : {".x", ".y", ".z"}) rows.push_back(turn + patch + axis);
+  return rows;
+}
+
+std::vector<std::string> frequency_rows(const Experiment&) { return {"frequency.x", "frequency.y", "frequency.z"}; }
+
+std::vector<std::string> measured_rows(const Experiment& experiment) {
+  std::vector<std::string> rows;
+  for (const MeasuredValue& m : experiment.measured) rows.push_back("measured." + m.name);
   return rows;
 }
 
@@ -164,6 +183,12 @@ const std::vector<Measure>& measure_table() {
      "|F − F_fem| / |F_fem| or |T − T_fem| / |T_fem|, the largest over the supports that are moved; those that vanish are left out"},
     {"mean_displacement", value, {{"mean_displacement", "m"}},
      "mean_displacement.PATCH.x|y|z|magnitude, area-weighted mean over a patch [m]", "", "", mean_displacement_rows},
+    {"turn", value, {{"turn", "deg"}}, "turn.PATCH.x|y|z, rotation of a patch as a whole, about an axis [deg]",
+     "", "", turn_rows},
+    {"frequency", value, {{"frequency", "Hz"}}, "frequency.x|y|z, lowest natural frequency of a model whose motion is mostly along that axis [Hz]",
+     "", "", frequency_rows},
+    {"measured", value, {{"measured", "1"}}, "measured.NAME, |E|/u_val of a value of [[measured]]; always judged where there are any",
+     "", "", measured_rows},
     {"probe", value, {{"displacement", "m"}}, "displacement.PROBE.x|y|z|magnitude [m]", "", "", probe_rows},
     {"stress", value, {{"stress", "Pa"}}, "stress.PROBE.xx|yy|zz|xy|yz|xz [Pa], finite elements only", "", "", stress_rows},
     {"motion", value, {{"motion.period", "s"}, {"motion.amplitude", "m"}, {"motion.arrival", "s"}, {"motion.contact_time", "s"}, {"motion", "1"}},
@@ -246,9 +271,10 @@ std::vector<std::string> supported_patches(const Experiment& experiment) {
 
 std::vector<std::string> moved_patches(const Experiment& experiment) { return patches_of(experiment, moves); }
 
-std::string patch_of_mean_displacement(const std::string& row) {
-  if (!row.starts_with(mean_displacement)) return "";
-  return row.substr(mean_displacement.size(), row.rfind('.') - mean_displacement.size());
+std::string patch_of_row(const std::string& row) {
+  for (const std::string& measure : {mean_displacement, turn})
+    if (row.starts_with(measure)) return row.substr(measure.size(), row.rfind('.') - measure.size());
+  return "";
 }
 
 }  // namespace springproof

@@ -56,8 +56,8 @@ bool wanted(const std::string& row, const std::vector<std::string>& measures);
 /// Names allowed in [compare] measures.
 std::vector<std::string> measure_names();
 
-/// Names of the rows that a measure gives for an experiment.  `mean_displacement` has rows for each patch of the body,
-/// known only from its mesh; here those for the patches named by loads and [[patch]].
+/// Names of the rows that a measure gives for an experiment.  `mean_displacement` and `turn` have rows for each patch
+/// of the body, known only from its mesh; here those for the patches named by loads and [[patch]].
 std::vector<std::string> rows_of_measure(const std::string& measure, const Experiment& experiment);
 
 /// Relative displacement [m] along x that the loads prescribe between x_min and x_max; empty: they do not.
@@ -69,7 +69,7 @@ std::vector<std::string> supported_patches(const Experiment& experiment);
 /// The supported patches that are moved: their prescribed displacement is not zero everywhere.
 std::vector<std::string> moved_patches(const Experiment& experiment);
 
-/// The patch of a row of mean_displacement; empty for other rows.
-std::string patch_of_mean_displacement(const std::string& row);
+/// The patch of a row of mean_displacement or turn; empty for other rows.
+std::string patch_of_row(const std::string& row);
 
 }  // namespace springproof

@@ -23,10 +23,10 @@ namespace fs = std::filesystem;
                    allowed.empty() ? why : fmt::format("{} (allowed: {})", why, allowed));
 }
 
-std::string too_large(std::uintmax_t most_bytes) {
+std::string too_large(std::uintmax_t limit) {
   constexpr std::uintmax_t MiB = std::uintmax_t{1} << 20, GiB = MiB << 10;
-  return most_bytes < GiB ? fmt::format("is larger than {} MiB", most_bytes / MiB)
-                          : fmt::format("is larger than {} GiB", most_bytes / GiB);
+  return limit < GiB ? fmt::format("is larger than {} MiB", limit / MiB)
+                     : fmt::format("is larger than {} GiB", limit / GiB);
 }
 
 /// Something is there, and a file in its place would be a loss: a pipe, a device.

@@ -83,6 +83,7 @@ function preparePrinting() {
 /// that can `show` a case alone says by `has` which, and is linked from that case's page.
 const sections = [
   {id: 'cases', heading: 'Cases', make: needsCases(casesSection)},
+  {id: 'measured', heading: 'Beside what was measured', contents: 'Measured', make: measuredSection},
   {id: 'shapes', heading: 'Deformed shapes', make: shapesSection},
   {id: 'motion', heading: 'Motion in time', contents: 'Motion', make: motionSection},
   {id: 'stability', heading: 'Equilibrium lost', make: stabilitySection},

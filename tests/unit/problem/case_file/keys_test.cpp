@@ -23,6 +23,8 @@ Values beside(const std::string& table, const std::string& key) {
       {"material", {{"youngs_modulus_Pa", "1e6"}, {"poisson_ratio", "0.25"}}},
       {"expect", {{"value", "1"}, {"within", "0.04"}}},
       {"mass", {{"on", "\"x_max\""}}},
+      {"load_case", {{"with", "{ mass = [] }"}}},
+      {"input", {{"of", "\"body.size_m[2]\""}, {"u", "3e-4"}}},
       {"external", {{"file", "\"abaqus.csv\""}}}};
   static const Values voxels = {{"cells", ""}, {"voxels", "100"}}, no_young = {{"youngs_modulus_Pa", ""}};
   static const std::map<std::string, Values> of_key = {
@@ -37,6 +39,8 @@ Values beside(const std::string& table, const std::string& key) {
       {"material.lame_lambda_Pa", no_young},
       {"compare.exact", {{"models", "[]"}}},
       {"mass.at_m", {{"on", ""}}},
+      {"input.with", {{"of", ""}, {"u", ""}}},
+      {"measured.values.arm_m", {{"quantity", "\"mean_displacement.x_max.z\""}}},
       {"reference.integrator", {{"in_time", "true"}}},
       {"expect.within_relative", {{"within", ""}}},
       {"expect.at_least", {{"value", ""}, {"within", ""}}},
@@ -70,11 +74,32 @@ std::string heading_of(const std::string& table) {
       {"patch.facing", "[[patch]]\nname = \"wrist\"\n[patch.facing]\n"},
       {"patch.near", "[[patch]]\nname = \"wrist\"\n[patch.near]\n"},
       {"external.files", "[[external]]\nname = \"abaqus\"\n[[external.files]]\n"},
+      {"measured.values", "[[measured]]\nsource = \"here\"\nlicence = \"none\"\n[[measured.values]]\n"},
+      {"load_case", "[[load_case]]\nname = \"52 g\"\n[[load_case]]\n"},
       {"dynamics.plane", "[dynamics]\nduration_s = 10\n[dynamics.plane]\n"}};
   if (const auto part = parts.find(table); part != parts.end()) return part->second;
   if (table.starts_with("load.")) return "[[load]]\n";
-  const std::set<std::string> several = {"patch", "mass", "probe", "expect", "published", "external"};
+  const std::set<std::string> several = {"patch",     "mass",     "probe", "expect",
+                                         "published", "external", "input", "measured"};
   return several.contains(table) ? "[[" + table + "]]\n" : "[" + table + "]\n";
+}
+
+/// What stands before and after a table of measured values, or of what is beside them.
+std::pair<std::string, std::string> around_measured(const std::string& table, const std::string& key) {
+  if (!table.starts_with("measured") && table != "load_case" && table != "input") return {};
+  const bool fit = key == "fitted" || key == "use";
+  std::string before =
+      "[[mass]]\nname = \"weight\"\non = \"x_max\"\nmass_kg = 0.052\n[[probe]]\nname = \"tip\"\nat_m = [0, 0, 0]\n"
+      "[compare]\nmeasures = [\"probe\", \"mean_displacement\"]\n";
+  if (table != "load_case")
+    before += "[[load_case]]\nname = \"52 g\"\n[[load_case]]\nname = \"own weight\"\nwith = { mass = [] }\n";
+  if (fit && table != "input")
+    before += "[[input]]\nname = \"E\"\nof = \"material.youngs_modulus_Pa\"\nu = 1\nfitted = true\n";
+  if (table.starts_with("measured")) return {before, ""};
+  return {before,
+          std::string("[[measured]]\nsource = \"here\"\nlicence = \"none\"\nvalues = [{ name = \"sag\", quantity = "
+                      "\"displacement.tip.z\", value = 0.01, u = 0.001") +
+              (fit ? ", use = \"fit\"" : "") + " }]\n"};
 }
 
 /// A case in which the key has a value.
@@ -97,7 +122,8 @@ std::string case_with(const KeyTable& table, const Key& key, const std::string& 
   if (exact) text += "[reference]\nelements = [\"q2\"]\n";
   if (name == "load.body_force_of") text += "[compare]\nmodels = []\n";
   if (in_time) text += "[[probe]]\nname = \"tip\"\nat_m = [0, 0, 0]\n[dynamics]\nduration_s = 1\n";
-  if (!name.empty()) text += heading_of(name) + table_with(table, key, value);
+  const auto [before, after] = around_measured(name, key.name);
+  if (!name.empty()) text += before + heading_of(name) + table_with(table, key, value) + after;
   return text;
 }
 

@@ -1,0 +1,140 @@
+// [[load_case]], [[input]] and [[measured]].
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "problem/case_file/experiment_parts.h"
+#include "problem/case_file/measures.h"
+#include "problem/case_file/varied.h"
+
+namespace springproof {
+namespace {
+
+std::vector<std::string> names_of(const Experiment& e) {
+  std::vector<std::string> names;
+  for (const LoadCase& c : e.load_cases) names.push_back(c.name);
+  return names;
+}
+
+template <class Named>
+std::string read_own_name(const TomlValue& value, const std::vector<Named>& others) {
+  std::string name = as_text(value);
+  if (std::any_of(others.begin(), others.end(), [&](const Named& other) { return other.name == name; }))
+    refuse(value, fmt::format("'{}' is the name of another", name), "a name of its own");
+  return name;
+}
+
+void read_load_cases(const TomlTable& document, Experiment& e) {
+  for (const TomlValue& value : document.tables("load_case")) {
+    const TomlTable table(value, keys_of("load_case"));
+    const auto with = table.find("with");
+    if (e.load_cases.empty() == with.has_value())
+      refuse(with.value_or(value), with ? "changes the first load case" : "is the case as written once more",
+             "`with` in all but the first, which is the case as written");
+    e.load_cases.push_back({read_own_name(table.at("name"), e.load_cases), location_of(value)});
+  }
+  if (e.load_cases.empty()) e.load_cases.push_back({"as written", {}});
+}
+
+void read_inputs(const TomlTable& document, Experiment& e) {
+  using enum UncertainInput::Kind;
+  for (const TomlValue& value : document.tables("input")) {
+    const TomlTable table(value, keys_of("input"));
+    const auto of = table.find("of"), u = table.find("u"), with = table.find("with"), fitted = table.find("fitted");
+    if (of.has_value() != u.has_value() || of.has_value() == with.has_value())
+      refuse(value, "is neither uncertain nor an alternative", "of and u, or with");
+    if (u && as_number(*u) == 0) refuse(*u, "is 0", "the standard uncertainty of the input, above or below its value");
+    for (const TomlValue& item : of ? one_or_several(*of) : std::vector<TomlValue>())
+      if (!item.node->is_string())
+        refuse(item, "is no key", "a key as written here, body.size_m[2], or a list of such");
+    UncertainInput input{read_own_name(table.at("name"), e.inputs), with ? alternative : uncertain, location_of(value)};
+    if (fitted && as_flag(*fitted)) input.kind = with ? alternative : UncertainInput::Kind::fitted;
+    e.inputs.push_back(std::move(input));
+  }
+}
+
+std::size_t read_load_case(const TomlValue& value, const Experiment& e) {
+  const std::vector<std::string> names = names_of(e);
+  const std::string name = as_choice(value, names);
+  return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+/// A length that no part of the body can have moved by was written in another unit.
+void check_size(const TomlValue& value, const Experiment& e, const MeasuredValue& m) {
+  constexpr double farthest = 2;  // sizes of the body
+  if (unit_of(m.quantity) == "m" && e.body.is_script() && std::abs(m.value) > farthest * e.body.size.maxCoeff())
+    refuse(value, fmt::format("is {} m, more than twice the size of the body", m.value),
+           fmt::format("a number in {}", unit_in(value.units, "m").name));
+}
+
+MeasuredValue read_value(const TomlValue& value, const Experiment& e) {
+  const TomlTable table(value, keys_of("measured.values"));
+  MeasuredValue m{.name = read_own_name(table.at("name"), e.measured),
+                  .quantity = read_row_name(table.at("quantity"), e),
+                  .where = location_of(table.at("quantity"))};
+  m.value = as_number_of(m.quantity, table.at("value"));
+  m.u = as_number_of(m.quantity, table.at("u"), positive_number);
+  check_size(table.at("value"), e, m);
+  if (is_distance(m.quantity) || is_deviation(m.quantity))
+    refuse(table.at("quantity"), fmt::format("'{}' is a difference between computations", m.quantity),
+           "a quantity that can be measured");
+  if (const auto arm = table.find("arm_m")) {
+    m.arm = as_vector(*arm);
+    if (!m.quantity.starts_with("mean_displacement.") || m.quantity.ends_with(".magnitude"))
+      refuse(*arm, "turns with a patch", "beside the quantity mean_displacement.PATCH.x|y|z");
+  }
+  if (const auto of = table.find("load_case")) m.of = read_load_case(*of, e);
+  if (const auto minus = table.find("minus")) m.minus = read_load_case(*minus, e);
+  if (m.minus == m.of) refuse(table.at("minus"), "is the same load case", "another one");
+  if (const auto use = table.find("use")) m.fitted = as_choice(*use, {"fit", "predict"}) == "fit";
+  return m;
+}
+
+/// One input is fitted to one value, or none to none.
+void check_fit(const TomlValue& first, const Experiment& e) {
+  const auto inputs = std::count_if(e.inputs.begin(), e.inputs.end(),
+                                    [](const auto& i) { return i.kind == UncertainInput::Kind::fitted; });
+  const auto values = std::count_if(e.measured.begin(), e.measured.end(), [](const auto& m) { return m.fitted; });
+  if (inputs != values || inputs > 1)
+    refuse(first, fmt::format("{} inputs are fitted to {} values", inputs, values),
+           "one [[input]] with fitted = true beside one value with use = \"fit\", or neither");
+}
+
+void read_measured_set(const TomlValue& value, Experiment& e) {
+  const TomlTable table(value, keys_of("measured"));
+  if (e.models.empty() || e.materials.size() != 1)
+    refuse(value, e.models.empty() ? "has no model beside it" : "is of one body, and the case has several materials",
+           "models in [compare], and one Poisson's ratio");
+  const std::string source = as_text(table.at("source")), licence = as_text(table.at("licence"));
+  if (const auto left_out = table.find("left_out")) e.left_out.push_back(as_text(*left_out));
+  for (const TomlValue& item : as_list(table.at("values"), "a list of { name, quantity, value, u }")) {
+    e.measured.push_back(read_value(item, e));
+    e.measured.back().source = source;
+    e.measured.back().licence = licence;
+  }
+}
+
+void add_measure(const char* name, Experiment& e) {
+  if (std::find(e.measures.begin(), e.measures.end(), name) == e.measures.end()) e.measures.emplace_back(name);
+}
+
+}  // namespace
+
+void read_measured(const TomlTable& document, Experiment& e) {
+  read_load_cases(document, e);
+  read_inputs(document, e);
+  const std::vector<TomlValue> sets = document.tables("measured");
+  for (const char* beside : {"load_case", "input"})
+    if (const auto alone = document.find(beside); alone && sets.empty())
+      refuse(*alone, "is for measured values", "beside [[measured]], or no such table");
+  if (sets.empty()) return;
+  for (const TomlValue& set : sets) read_measured_set(set, e);
+  check_fit(sets.front(), e);
+  add_measure("measured", e);
+  if (std::any_of(e.measured.begin(), e.measured.end(), [](const auto& m) { return !m.arm.isZero(0); }))
+    add_measure("turn", e);
+  for (std::size_t i = 1; i < e.load_cases.size(); ++i) varied(e, {i, {}});
+  for (std::size_t i = 0; i < e.inputs.size(); ++i) varied(e, {0, i});
+}
+
+}  // namespace springproof

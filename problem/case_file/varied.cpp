@@ -1,0 +1,119 @@
+#include "problem/case_file/varied.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+
+#include "problem/case_file/experiment_parts.h"
+
+namespace springproof {
+namespace {
+
+/// What a path names: a key of a table, or an item of a list.
+struct Place {
+  toml::node* parent = nullptr;
+  std::string key = {};    ///< of a table
+  std::size_t number = 0;  ///< of a list
+
+  toml::node* node() const {
+    if (toml::table* table = parent->as_table()) return table->get(key);
+    return parent->as_array()->get(number);
+  }
+};
+
+/// "body.size_m[2]" from the root; empty: there is no such key or item.
+std::optional<Place> place_of(toml::table& document, const std::string& path) {
+  Place place{&document};
+  toml::node* node = &document;
+  for (std::size_t at = 0; at < path.size();) {
+    const bool item = path[at] == '[';
+    const std::size_t begin = at + (item || path[at] == '.' ? 1 : 0);
+    const std::size_t end = std::min(path.find_first_of(item ? "]" : ".[", begin), path.size());
+    const std::string part = path.substr(begin, end - begin);
+    at = end + (item ? 1 : 0);
+    place = {node, part};
+    if (part.empty() || !node || !(item ? node->is_array() : node->is_table())) return {};
+    if (item && std::from_chars(part.data(), part.data() + part.size(), place.number).ptr != part.data() + part.size())
+      return {};
+    node = place.node();
+  }
+  return place;
+}
+
+template <class Value>
+void set(const Place& place, const Value& value) {
+  if (toml::table* table = place.parent->as_table())
+    table->insert_or_assign(place.key, value);
+  else
+    place.parent->as_array()->replace(place.parent->as_array()->begin() + static_cast<std::ptrdiff_t>(place.number),
+                                      value);
+}
+
+/// Sets what the keys of `with` name.
+void replace(const TomlValue& with, toml::table& document) {
+  const toml::table* changes = with.node->as_table();
+  if (!changes || changes->empty()) refuse(with, "is no change", "keys of the case with other values");
+  for (const auto& [key, value] : *changes) {
+    const std::string path(key.str());
+    const std::optional<Place> place = place_of(document, path);
+    const auto* list = value.as_array();
+    const bool leaves_out = list && list->empty();
+    if (!place || ((leaves_out || place->parent->is_array()) && !place->node()))
+      refuse({&value, with.key, with.file}, fmt::format("'{}' names nothing in the case", path),
+             "a key as written here, mass[0].mass_kg");
+    if (leaves_out && place->parent->is_table())
+      place->parent->as_table()->erase(place->key);
+    else
+      value.visit([&](const auto& v) { set(*place, v); });
+  }
+}
+
+/// Adds its u to the numbers that an input is.
+void add(const TomlValue& input, bool must_be_there, toml::table& document) {
+  const toml::table& table = *input.node->as_table();
+  const double u = *table.get("u")->value<double>();
+  for (const TomlValue& item : one_or_several({table.get("of"), input.key + ".of", input.file})) {
+    const std::optional<Place> place = place_of(document, as_text(item));
+    const toml::node* number = place ? place->node() : nullptr;
+    if (number && number->is_number())
+      set(*place, *number->value<double>() + u);
+    else if (must_be_there)
+      refuse(item, fmt::format("'{}' is no number of the case", as_text(item)),
+             "a key as written here, body.size_m[2], or a list of such");
+  }
+}
+
+TomlValue table_of(toml::table& document, const char* name, std::size_t number, const std::string& file) {
+  return {document.get_as<toml::array>(name)->get(number), name, file};
+}
+
+}  // namespace
+
+Experiment varied(const Experiment& e, const Variation& variation) {
+  const std::string file = e.file.string();
+  toml::table as_written = toml::parse(e.text, file), document = as_written;
+  SourceLocation where;
+  if (variation.load_case > 0) {
+    const TomlValue load_case = table_of(as_written, "load_case", variation.load_case, file);
+    where = location_of(load_case);
+    replace({load_case.node->as_table()->get("with"), "load_case.with", file}, document);
+  }
+  if (variation.input) {
+    const TomlValue input = table_of(as_written, "input", *variation.input, file);
+    where = location_of(input);
+    if (const toml::node* with = input.node->as_table()->get("with"))
+      replace({with, "input.with", file}, document);
+    else
+      add(input, variation.load_case == 0, document);
+  }
+  for (const char* name : {"measured", "load_case", "input", "expect", "published"}) document.erase(name);
+  try {
+    Experiment changed = read_document(document, e);
+    changed.measures = e.measures;
+    return changed;
+  } catch (const InputError& refused) {
+    throw InputError(where, fmt::format("with this change the case is refused: {}", refused.what()));
+  }
+}
+
+}  // namespace springproof
