@@ -26,8 +26,8 @@ int main(int count, char** arguments) try {
   if (count != 2) return std::fprintf(stderr, "usage: forces_in_c FILE.json\n"), 2;
   const json file = json::parse(std::ifstream(arguments[1])), laws = file.at("laws"), derived = file.at("derived");
   const json of_cells = file.value("cells", json::object());
-  const std::vector<std::string> known = {"springs", "volume_correction", "hourglass_correction", "averaged_springs",
-                                          "anchors"};
+  const std::vector<std::string> known = {"springs",          "volume_correction", "hourglass_correction",
+                                          "averaged_springs", "measured_cells",    "anchors"};
   bool all = !of_cells.contains("proportions") && of_cells.contains("nodes");
   for (const auto& [name, law] : laws.items()) all = all && std::find(known.begin(), known.end(), name) != known.end();
   if (!all)
@@ -43,6 +43,8 @@ int main(int count, char** arguments) try {
   const auto edges = edge.is_array() ? flat<double>(edge) : std::vector<double>(cells.size() / 8, edge);
   const auto carried_nodes = flat<int>(carried.value("nodes", json::array())),
              carried_by = flat<int>(carried.value("by", json::array()));
+  const auto form =
+      laws.contains("measured_cells") ? flat<double>(laws.at("measured_cells").at("form_N_m")) : std::vector<double>{};
   const auto energy = [&](std::vector<double> x, double* f) {
     sp_carry(carried_nodes.size(), carried_nodes.data(), carried_by.data(), x.data());
     double W = sp_springs(k.size(), ends.data(), k.data(), L.data(), x.data(), f);
@@ -54,10 +56,12 @@ int main(int count, char** arguments) try {
                         {derived.at("hourglass_bending_N_m"), derived.at("hourglass_coupling_N_m"),
                          derived.at("hourglass_torsion_N_m"), derived.at("hourglass_torsion_coupling_N_m")},
                         X.data(), x.data(), f);
+    const sp_parts parts = {fraction.empty() ? nullptr : fraction.data(), mean.data(), mixed.data(), variance.data()};
+    if (laws.contains("measured_cells"))
+      W += sp_measured(cells.size() / 8, cells.data(), edges[0], parts, form.data(), x.data(), f);
     if (laws.contains("averaged_springs")) {
       const json& law = laws.at("averaged_springs");
       const std::string curve = law.at("curve");
-      const sp_parts parts = {fraction.empty() ? nullptr : fraction.data(), mean.data(), mixed.data(), variance.data()};
       const struct sp_averaged springs = {curve == "hencky"      ? SP_HENCKY
                                           : curve == "neo_hooke" ? SP_NEO_HOOKE
                                                                  : SP_NEO_HOOKE_ISOCHORIC,

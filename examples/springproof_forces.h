@@ -1,8 +1,9 @@
-/* Forces of averaged springs (hybmss_avg) in whole and in cut cells, of HybMSS and its hourglass correction in C99, for
- * an engine or a shader that has a springs file (springproof export BODY --to springs) and nothing else of springproof.
- * SI units; nodes count from 0; a vector is three numbers in a row.  Every function adds to the forces f [N] and
- * returns its energy [J]; f may be null.  Equations: Golec et al. (2019); averaged springs: docs/large_strain.md; cut
- * cells and anchors: docs/cut_cells.md; the hourglass correction: docs/papers.md, section 4. */
+/* Forces of averaged springs (hybmss_avg) in whole and in cut cells, of measured cells, of HybMSS and its hourglass
+ * correction in C99, for an engine or a shader that has a springs file (springproof export BODY --to springs) and
+ * nothing else of springproof. SI units; nodes count from 0; a vector is three numbers in a row.  Every function adds
+ * to the forces f [N] and returns its energy [J]; f may be null.  Equations: Golec et al. (2019); averaged springs:
+ * docs/large_strain.md; cut cells and anchors: docs/cut_cells.md; the hourglass correction: docs/papers.md, section 4.
+ */
 #ifndef SPRINGPROOF_FORCES_H
 #define SPRINGPROOF_FORCES_H
 
@@ -194,44 +195,132 @@ static void sp_hourglass_springs(struct sp_averaged law, double edge, struct sp_
   }
 }
 
-/* Averaged springs of one cell with the corners n: W = V w(F) + v . w / 2, V the volume of the filled part, F its mean
- * deformation gradient, v = F^T q, q the corners' positions in the patterns yz, zx, xy, xyz that F does not see.  For
- * any strain and rotation. */
-static double sp_averaged_cell(struct sp_averaged law, double edge, struct sp_part part, const int n[8],
-                               const double* x, double* f) {
-  const double V = part.fraction * edge * edge * edge;
-  double F[3][3] = {{0}}, P[3][3], q[3][4] = {{0}}, v[4][3] = {{0}}, w[4][3], h[8][4], g[8][3];
+/* How a cell is deformed: F the mean deformation gradient of its filled part, q the corners' positions in the patterns
+ * h (yz, zx, xy, xyz) that F does not see, v = F^T q. */
+struct sp_state {
+  double g[8][3], h[8][4], F[3][3], q[3][4], v[4][3];
+};
+
+static struct sp_state sp_state_of(double edge, struct sp_part part, const int n[8], const double* x) {
+  struct sp_state a = {{{0}}, {{0}}, {{0}}, {{0}}, {{0}}};
   for (int corner = 0; corner < 8; ++corner) {
     const int* s = sp_sign[corner];
     for (int i = 0; i < 3; ++i) { /* g: mean gradient of the corner's trilinear weight */
       const int j = (i + 1) % 3, k = (i + 2) % 3;
-      h[corner][i] = s[j] * s[k] / 2.0;
-      g[corner][i] =
+      a.h[corner][i] = s[j] * s[k] / 2.0;
+      a.g[corner][i] =
           s[i] / edge * (0.25 + (s[j] * part.mean[j] + s[k] * part.mean[k]) / 2 + s[j] * s[k] * part.mixed[i]);
     }
-    h[corner][3] = s[0] * s[1] * s[2];
+    a.h[corner][3] = s[0] * s[1] * s[2];
     for (int i = 0; i < 3; ++i) {
       const double at = x[3 * n[corner] + i];
-      for (int j = 0; j < 3; ++j) F[i][j] += at * g[corner][j];
-      for (int m = 0; m < 4; ++m) q[i][m] += at * h[corner][m];
+      for (int j = 0; j < 3; ++j) a.F[i][j] += at * a.g[corner][j];
+      for (int m = 0; m < 4; ++m) a.q[i][m] += at * a.h[corner][m];
     }
   }
   for (int m = 0; m < 4; ++m)
     for (int j = 0; j < 3; ++j)
-      for (int i = 0; i < 3; ++i) v[m][j] += F[i][j] * q[i][m];
-  sp_hourglass_springs(law, edge, part, v, w);
-  double energy = V * sp_strain_energy(law, F, P);
-  for (int m = 0; m < 4; ++m)
-    for (int j = 0; j < 3; ++j) energy += 0.5 * v[m][j] * w[m][j];
-  for (int i = 0; f && i < 3; ++i)
+      for (int i = 0; i < 3; ++i) a.v[m][j] += a.F[i][j] * a.q[i][m];
+  return a;
+}
+
+/* From w = dW/dv, and dW/dF beside it. */
+static void sp_add_cell(const struct sp_state* a, double of_F[3][3], double w[4][3], const int n[8], double* f) {
+  for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) {
-      double stress = V * P[i][j];
-      for (int m = 0; m < 4; ++m) stress += q[i][m] * w[m][j];
+      double stress = of_F[i][j];
+      for (int m = 0; m < 4; ++m) stress += a->q[i][m] * w[m][j];
       for (int corner = 0; corner < 8; ++corner) {
-        f[3 * n[corner] + i] -= stress * g[corner][j];
-        for (int m = 0; m < 4; ++m) f[3 * n[corner] + i] -= h[corner][m] * F[i][j] * w[m][j];
+        f[3 * n[corner] + i] -= stress * a->g[corner][j];
+        for (int m = 0; m < 4; ++m) f[3 * n[corner] + i] -= a->h[corner][m] * a->F[i][j] * w[m][j];
       }
     }
+}
+
+/* Averaged springs of one cell with the corners n: W = V w(F) + v . w / 2, V the volume of the filled part.  For any
+ * strain and rotation. */
+static double sp_averaged_cell(struct sp_averaged law, double edge, struct sp_part part, const int n[8],
+                               const double* x, double* f) {
+  struct sp_state a = sp_state_of(edge, part, n, x);
+  const double V = part.fraction * edge * edge * edge;
+  double P[3][3], w[4][3];
+  sp_hourglass_springs(law, edge, part, a.v, w);
+  double energy = V * sp_strain_energy(law, a.F, P);
+  for (int m = 0; m < 4; ++m)
+    for (int j = 0; j < 3; ++j) energy += 0.5 * a.v[m][j] * w[m][j];
+  for (int i = 0; f && i < 3; ++i)
+    for (int j = 0; j < 3; ++j) P[i][j] *= V;
+  if (f) sp_add_cell(&a, P, w, n, f);
+  return energy;
+}
+
+/* Eigenvectors of a symmetric matrix as the columns of V, by Jacobi's rotations; A's diagonal gets the eigenvalues. */
+static void sp_eigenvectors(double A[3][3], double V[3][3]) {
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) V[i][j] = i == j;
+  for (int turn = 0; turn < 30; ++turn) {
+    const int p = turn % 3, q = (p + 1) % 3;
+    if (fabs(A[p][q]) <= 1e-17 * (fabs(A[p][p]) + fabs(A[q][q]))) continue;
+    const double theta = (A[q][q] - A[p][p]) / (2 * A[p][q]);
+    const double t = (theta < 0 ? -1 : 1) / (fabs(theta) + sqrt(theta * theta + 1)), c = 1 / sqrt(t * t + 1), s = t * c;
+    for (int k = 0; k < 3; ++k) {
+      const double a = A[k][p], b = A[k][q], u = V[k][p], v = V[k][q];
+      A[k][p] = c * a - s * b, A[k][q] = s * a + c * b;
+      V[k][p] = c * u - s * v, V[k][q] = s * u + c * v;
+    }
+    for (int k = 0; k < 3; ++k) {
+      const double a = A[p][k], b = A[q][k];
+      A[p][k] = c * a - s * b, A[q][k] = s * a + c * b;
+    }
+  }
+}
+
+/* A measured cell: W = y . M y / 2, y = (edge log U, v), U^2 = F^T F; log U as xx, yy, zz, 2 yz, 2 zx, 2 xy, v by
+ * pattern and axis.  form: its 171 numbers of laws.measured_cells.form_N_m, the lower triangle of M row by row [N/m].
+ * Infinite if the cell is inside out. */
+static double sp_measured_cell(const double* form, double edge, struct sp_part part, const int n[8], const double* x,
+                               double* f) {
+  static const int of[6][2] = {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {2, 0}, {0, 1}};
+  struct sp_state a = sp_state_of(edge, part, n, x);
+  double C[3][3], V[3][3], y[18] = {0}, s[18] = {0}, S[3][3], w[4][3], of_F[3][3] = {{0}}, normal[3], energy = 0;
+  sp_cross(a.F[0], a.F[1], normal);
+  if (!(normal[0] * a.F[2][0] + normal[1] * a.F[2][1] + normal[2] * a.F[2][2] > 0)) return INFINITY;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) C[i][j] = a.F[0][i] * a.F[0][j] + a.F[1][i] * a.F[1][j] + a.F[2][i] * a.F[2][j];
+  sp_eigenvectors(C, V);
+  for (int e = 0; e < 6; ++e)
+    for (int k = 0; k < 3; ++k) y[e] += (e < 3 ? 0.5 : 1) * edge * log(C[k][k]) * V[of[e][0]][k] * V[of[e][1]][k];
+  for (int m = 0; m < 12; ++m) y[6 + m] = a.v[m / 3][m % 3];
+  for (int i = 0; i < 18; ++i)
+    for (int j = 0; j <= i; ++j, ++form) {
+      s[i] += *form * y[j];
+      if (j < i) s[j] += *form * y[i];
+    }
+  for (int i = 0; i < 18; ++i) energy += 0.5 * s[i] * y[i];
+  if (!f) return energy;
+  for (int e = 0; e < 6; ++e) S[of[e][0]][of[e][1]] = S[of[e][1]][of[e][0]] = edge * s[e];
+  for (int m = 0; m < 12; ++m) w[m / 3][m % 3] = s[6 + m];
+  for (int p = 0; p < 3; ++p)
+    for (int q = 0; q < 3; ++q) { /* in axes of the eigenvectors: times the divided difference of log(C) / 2 */
+      const double t = C[p][p] / C[q][q] - 1;
+      double along = 0;
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) along += V[i][p] * S[i][j] * V[j][q];
+      along *= (t == 0 ? 1 : log1p(t) / t) / (2 * C[q][q]);
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+          for (int k = 0; k < 3; ++k) of_F[i][j] += 2 * a.F[i][k] * V[k][p] * along * V[j][q];
+    }
+  sp_add_cell(&a, of_F, w, n, f);
+  return energy;
+}
+
+/* Of all cells of one size; form: cells x 171. */
+static double sp_measured(size_t cells, const int* nodes, double edge, struct sp_parts parts, const double* form,
+                          const double* x, double* f) {
+  double energy = 0;
+  for (size_t cell = 0; cell < cells; ++cell)
+    energy += sp_measured_cell(form + 171 * cell, edge, sp_part_of(parts, cell), nodes + 8 * cell, x, f);
   return energy;
 }
 

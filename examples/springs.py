@@ -96,17 +96,39 @@ def stress(law, F):  # P = dW/dF of a cell
 
 PATTERN = np.column_stack([SIGN[:, 1] * SIGN[:, 2] / 2, SIGN[:, 2] * SIGN[:, 0] / 2, SIGN[:, 0] * SIGN[:, 1] / 2, SIGN.prod(axis=1)])
 
-def averaged(law, cells, x, f):
-    if law["shift"]: sys.exit("averaged springs with a shift are linear: not here")
-    (alpha, c, p, S), l, at = moments(cells), cells["edge_m"], x[cells["nodes"]]
-    box = np.array(cells.get("proportions", [1, 1, 1]))
-    g = np.empty(at.shape)  # mean gradients of the weights of the corners
+def deformation(cells, x):  # mean gradients g of the corners' weights; of their positions F, and the patterns q that it does not see
+    (_, c, p, _), l, at = moments(cells), cells["edge_m"], x[cells["nodes"]]
+    box, g = np.array(cells.get("proportions", [1, 1, 1])), np.empty(at.shape)
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
         sj, sk = SIGN[:, j], SIGN[:, k]
         g[:, :, i] = SIGN[:, i] / (box[i] * np.reshape(l, (-1, 1))) * (1 / 4 + (np.outer(c[:, j], sj) + np.outer(c[:, k], sk)) / 2 + np.outer(p[:, i], sj * sk))
-    F, q = np.einsum("cai,caj->cij", at, g), np.einsum("cai,am->cmi", at, PATTERN)
-    v = np.einsum("cij,cmi->cmj", F, q)
+    return g, np.einsum("cai,caj->cij", at, g), np.einsum("cai,am->cmi", at, PATTERN)
+
+def add_cells(cells, g, F, q, w, stress, f):  # w: dE/dv, v = F^T q; stress: dE/dF beside it
+    total = stress + np.einsum("cmi,cmj->cij", q, w)
+    np.add.at(f, cells["nodes"], -np.einsum("cij,caj->cai", total, g) - np.einsum("cij,cmj,am->cai", F, w, PATTERN))
+
+def measured(law, cells, x, f):
+    g, F, q = deformation(cells, x)
+    v, l, form = np.einsum("cij,cmi->cmj", F, q), cells["edge_m"], np.zeros((len(F), 18, 18))
+    i, j = np.tril_indices(18)
+    form[:, i, j] = form[:, j, i] = law["form_N_m"].reshape(len(F), -1)
+    C, V = np.linalg.eigh(np.einsum("cki,ckj->cij", F, F))
+    e = np.einsum("cik,ck,cjk->cij", V, np.log(C) / 2, V)  # log U
+    strain = l * np.stack([e[:, 0, 0], e[:, 1, 1], e[:, 2, 2], 2 * e[:, 1, 2], 2 * e[:, 2, 0], 2 * e[:, 0, 1]], axis=1)
+    s = np.einsum("cij,cj->ci", form, np.concatenate([strain, v.reshape(-1, 12)], axis=1))
+    t = C[:, :, None] / C[:, None, :] - 1
+    slope = np.where(t == 0, 1, np.log1p(t) / np.where(t == 0, 1, t)) / (2 * C[:, None, :])  # divided differences of log(C) / 2
+    S = np.einsum("cki,ckl,clj->cij", V, l * s[:, [[0, 5, 4], [5, 1, 3], [4, 3, 2]]], V) * slope
+    P = 2 * np.einsum("cik,ckl,clm,cjm->cij", F, V, S, V)
+    P[np.linalg.det(F) <= 0] = np.nan  # inside out
+    add_cells(cells, g, F, q, s[:, 6:].reshape(-1, 4, 3), P, f)
+
+def averaged(law, cells, x, f):
+    if law["shift"]: sys.exit("averaged springs with a shift are linear: not here")
+    (alpha, c, p, S), l, (g, F, q) = moments(cells), cells["edge_m"], deformation(cells, x)
+    box, v = np.array(cells.get("proportions", [1, 1, 1])), np.einsum("cij,cmi->cmj", F, q)
     rho, V, w = np.maximum(12 * S, 0.1) * box**2, box[:, None] * (v[:, :3] + c[:, :, None] * v[:, 3:]), np.empty(v.shape)
     for j in range(3):
         k, m = (j + 1) % 3, (j + 2) % 3
@@ -117,8 +139,7 @@ def averaged(law, cells, x, f):
     w[:, :3] *= box[:, None]
     w[:, 3] += np.einsum("cm,cmj->cj", c, w[:, :3])
     w *= (alpha * law["shear_modulus_Pa"] * l / 2)[:, None, None]
-    total = (alpha * l**3)[:, None, None] * stress(law, F) + np.einsum("cmi,cmj->cij", q, w)
-    np.add.at(f, cells["nodes"], -np.einsum("cij,caj->cai", total, g) - np.einsum("cij,cmj,am->cai", F, w, PATTERN))
+    add_cells(cells, g, F, q, w, (alpha * l**3)[:, None, None] * stress(law, F), f)
 
 def directions(s, N, share):  # of the springs of a lattice of cells; of other networks all alike
     if "cells" in s:
@@ -203,6 +224,7 @@ def forces(s, x):
     if law := laws.get("volume_correction"): volume(law, s["cells"]["nodes"], s["cells"]["edge_m"]**3, x, f)
     if law := laws.get("hourglass_correction"): hourglass(law, s["derived"], s["cells"]["nodes"], x - X, f)
     if law := laws.get("averaged_springs"): averaged(law, s["cells"], x, f)
+    if law := laws.get("measured_cells"): measured(law, s["cells"], x, f)
     if law := laws.get("angular_springs"): angles(law, s["triangles"], x, X, f)
     return hand_back(s, f)
 

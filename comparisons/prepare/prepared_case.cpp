@@ -7,6 +7,7 @@
 #include <iterator>
 #include <map>
 
+#include "msm/embedding/boundary.h"
 #include "msm/exchange/anchored_springs.h"
 #include "msm/vertex_models.h"
 
@@ -74,14 +75,7 @@ EmbeddedModel built_on(const PreparedCase& prepared, const Lattice& lattice, con
   if (passes_patch_test(parameters.row) && lattice.tetrahedra)
     return build_on_tetrahedra(lattice, parameters, material);
   if (!parameters.cut.value_or(false)) return build_embedded(parameters, *lattice.mesh, material, lattice.region.get());
-  ModelParameters averaged = parameters;
-  averaged.coarsened = false;
-  EmbeddedModel built = build_cut(averaged, *lattice.cut, {held.begin(), held.end()}, *lattice.mesh, material);
-  if (!parameters.coarsened.value_or(false)) return built;
-  erase_laws<AveragedSprings>(built.model);
-  built.model.laws.emplace_back(lattice.measured->law(parameters, material));
-  built.model.small_displacements_only = true;
-  return built;
+  return build_cut_on(lattice, parameters, {held.begin(), held.end()}, material);
 }
 
 }  // namespace
@@ -92,6 +86,17 @@ const Network& FittedNetworks::of(const ModelParameters& parameters, const Mesh&
   const auto known = by_springs_per_node_.find(key);
   if (known != by_springs_per_node_.end()) return known->second;
   return by_springs_per_node_.emplace(key, fitted_on_vertices(parameters, tetrahedra)).first->second;
+}
+
+EmbeddedModel build_cut_on(const Lattice& lattice, const ModelParameters& parameters,
+                           const std::vector<std::string>& held, const IsotropicMaterial& material) {
+  ModelParameters averaged = parameters;
+  averaged.coarsened = false;
+  EmbeddedModel built = build_cut(averaged, *lattice.cut, held, *lattice.mesh, material);
+  if (!parameters.coarsened.value_or(false)) return built;
+  erase_laws<AveragedSprings>(built.model);
+  built.model.laws.emplace_back(lattice.measured->law(parameters, material));
+  return built;
 }
 
 EmbeddedModel build_on(const PreparedCase& prepared, const Lattice& lattice, const ModelParameters& parameters,

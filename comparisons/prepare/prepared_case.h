@@ -103,6 +103,11 @@ struct PreparedCase {
 EmbeddedModel build_on(const PreparedCase& prepared, const Lattice& lattice, const ModelParameters& parameters,
                        const IsotropicMaterial& material, bool in_motion);
 
+/// Builds a model of the cut cells of a lattice, measured ones if ModelParameters::coarsened says so.
+/// @param held names of the patches that anchors hold
+EmbeddedModel build_cut_on(const Lattice& lattice, const ModelParameters& parameters,
+                           const std::vector<std::string>& held, const IsotropicMaterial& material);
+
 /// Adds the next lattice.
 void add_lattice(Lattice lattice, PreparedCase& prepared);
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "comparisons/prepare/input_checksum.h"
+#include "msm/embedding/boundary.h"
 #include "msm/embedding/supports.h"
 #include "msm/measure/moduli.h"
 #include "msm/models.h"
@@ -56,7 +57,7 @@ void add_network(const PreparedCase& prepared, const Mesh* carried, SpringsFile&
 void add_cut_network(const PreparedCase& prepared, const Mesh* carried, SpringsFile& file) {
   const Lattice& lattice = prepared.lattices.front();
   const CutBody& body = *lattice.cut;
-  EmbeddedModel built = build_cut(prepared.models.front(), body, {}, *lattice.mesh, *file.material);
+  EmbeddedModel built = build_cut_on(lattice, prepared.models.front(), {}, *file.material);
   attach(prepared.experiment.masses, *lattice.mesh, built.embedding, built.model.network);
   file.model = std::move(built.model);
   erase_laws<Anchors>(file.model);

@@ -201,7 +201,7 @@ std::string refinement_note(const RefinedBody& refined, double accuracy) {
 std::string measured_note(const Lattice& lattice, const MeasuredBody& measured) {
   constexpr double worth = 0.7;  // of the error of averaged springs
   const std::string says = fmt::format(
-      "{} cells measured in cells of a third of their edge: under a load that they were not measured by they "
+      "{} cells measured in cells of a third of their edge: under loads that they were not measured by they "
       "are {:.2g} % off these, averaged springs {:.2g} %",
       lattice.cut->cells.size(), 100 * measured.error, 100 * measured.error_of_averaged);
   if (measured.error > worth * measured.error_of_averaged)

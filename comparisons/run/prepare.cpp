@@ -85,24 +85,22 @@ void choose_measured_cells(PreparedCase& prepared) {
   const Experiment& e = prepared.experiment;
   for (std::size_t m = 0; m < prepared.models.size(); ++m) {
     ModelParameters& p = prepared.models[m];
-    const char* reason = !*p.cut                                      ? "its cells are not cut"
-                         : !e.body.accuracies.empty()                 ? "accuracy makes cells of several sizes"
-                         : p.shift > 0                                ? "shift is for averaged springs"
-                         : e.models[m].in_motion                      ? "it is to move in time"
-                         : e.model_kinematics() != Kinematics::linear ? "the displacements are large"
-                                                                      : nullptr;
+    const char* reason = !*p.cut                      ? "its cells are not cut"
+                         : !e.body.accuracies.empty() ? "accuracy makes cells of several sizes"
+                         : p.shift > 0                ? "shift is for averaged springs"
+                         : p.curve.value_or(StrainCurve::hencky) != StrainCurve::hencky
+                             ? "at large strain they follow Hencky's law"
+                             : nullptr;
     if (reason && p.coarsened.value_or(false))
-      throw InputError(e.models[m].where,
-                       fmt::format("compare.models: {}: coarsened = true: {} (allowed: cut cells of one size, at rest "
-                                   "under small displacements)",
-                                   p.row.name, reason));
+      throw InputError(
+          e.models[m].where,
+          fmt::format("compare.models: {}: coarsened = true: {} (allowed: cut cells of one size)", p.row.name, reason));
     p.coarsened = p.coarsened.value_or(e.body.coarsened && !reason);
   }
   const auto is_measured = [](const ModelParameters& p) { return *p.coarsened; };
   if (e.body.coarsened && std::none_of(prepared.models.begin(), prepared.models.end(), is_measured))
     throw InputError(e.body.where,
-                     "body.coarsened: no model of the case has cells that can be measured (allowed: one of cut cells, "
-                     "at rest under small displacements)");
+                     "body.coarsened: no model of the case has cells that can be measured (allowed: one of cut cells)");
 }
 
 /// @throws InputError at options of nodes at random, for a network whose nodes are the vertices of a mesh.

@@ -14,9 +14,9 @@ class LayeredMatrix {
   explicit LayeredMatrix(const std::vector<int>& unknowns);
 
   /// Block of a layer; the lower triangle is read.
-  Eigen::MatrixXd& of(std::size_t layer) { return own_[layer]; }
+  auto of(std::size_t layer) { return columns_[layer].topRows(columns_[layer].cols()); }
   /// Rows of the layer after `layer`, columns of `layer`.
-  Eigen::MatrixXd& below(std::size_t layer) { return next_[layer]; }
+  auto below(std::size_t layer) { return columns_[layer].bottomRows(below_of(layer)); }
 
   /// Replaces the matrix by its factors.
   /// @return false if it is not positive definite
@@ -26,8 +26,10 @@ class LayeredMatrix {
   void solve(Eigen::MatrixXd& b) const;
 
  private:
+  Eigen::Index below_of(std::size_t layer) const { return columns_[layer].rows() - columns_[layer].cols(); }
+
   std::vector<Eigen::Index> begin_;
-  std::vector<Eigen::MatrixXd> own_, next_;
+  std::vector<Eigen::MatrixXd> columns_;  ///< of each layer: its own rows, and those of the next one
 };
 
 }  // namespace springproof

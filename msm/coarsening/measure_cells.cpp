@@ -106,14 +106,18 @@ MeasuredBody measure_cells(const MeasuredIn& in, const MeasureOptions& options) 
 }
 
 FineTruth::FineTruth(const MeasuredIn& in) : in_(in), P_(prolongation(in.coarse, in.fine)) {
-  constexpr int number = 25;  // of the loads: a force on one end of the body, taken by another; and a body force
+  constexpr int count = 4, body_forces = 24;  // each a body force, and a force at one place, taken by another
   const MassSpringModel model = held_cells(in.fine.body, in.held, in.law);
   Network as_wide = model.network;
   as_wide.cells.edge = in.coarse.grid.edge;
   const Eigen::MatrixXd loads = loads_all_over(as_wide, 1);
-  const Eigen::VectorXd load = loads.col(0) + loads.col(number), truth = displacements_under(model, load);
-  load_ = NodalView(load.data(), load.size() / 3, 3).topRows(P_.rows());
-  truth_ = NodalView(truth.data(), truth.size() / 3, 3).topRows(P_.rows());
+  load_ = loads.leftCols(count) + loads.middleCols(body_forces + 1, count);
+  truth_ = displacements_under(model, load_);
+  for (int i = 0; i < count; ++i) {
+    const double unit = std::sqrt(truth_.col(i).dot(load_.col(i)));
+    load_.col(i) /= unit;
+    truth_.col(i) /= unit;
+  }
   volume_ = model.network.volume.head(P_.rows());
   for (Eigen::Index n = 0; n < P_.rows(); ++n)
     if (P_.outerIndexPtr()[n] == P_.outerIndexPtr()[n + 1]) volume_[n] = 0;
@@ -121,11 +125,23 @@ FineTruth::FineTruth(const MeasuredIn& in) : in_(in), P_(prolongation(in.coarse,
 
 double FineTruth::error(const ForceLaw& of_cells) const {
   const MassSpringModel model = held_cells(in_.coarse, in_.held, of_cells);
-  NodalVectors load = NodalVectors::Zero(model.network.X.rows(), 3);
-  load.topRows(P_.cols()) = P_.transpose() * load_;
-  const Eigen::VectorXd u = displacements_under(model, Eigen::Map<const Eigen::VectorXd>(load.data(), load.size()));
-  const NodalVectors off = P_ * NodalView(u.data(), u.size() / 3, 3).topRows(P_.cols()) - truth_;
-  return std::sqrt(volume_.dot(off.rowwise().squaredNorm()) / volume_.dot(truth_.rowwise().squaredNorm()));
+  const auto nodes_of = [](const Eigen::MatrixXd& fields, Eigen::Index i, Eigen::Index nodes) -> NodalVectors {
+    return NodalView(fields.col(i).data(), nodes, 3);
+  };
+  Eigen::MatrixXd loads(model.network.X.size(), load_.cols());
+  for (Eigen::Index i = 0; i < loads.cols(); ++i) {
+    NodalVectors load = NodalVectors::Zero(model.network.X.rows(), 3);
+    load.topRows(P_.cols()) = P_.transpose() * nodes_of(load_, i, P_.rows());
+    loads.col(i) = Eigen::Map<const Eigen::VectorXd>(load.data(), load.size());
+  }
+  const Eigen::MatrixXd u = displacements_under(model, loads);
+  double off = 0, all = 0;
+  for (Eigen::Index i = 0; i < u.cols(); ++i) {
+    const NodalVectors truth = nodes_of(truth_, i, P_.rows());
+    off += volume_.dot((P_ * nodes_of(u, i, P_.cols()) - truth).rowwise().squaredNorm());
+    all += volume_.dot(truth.rowwise().squaredNorm());
+  }
+  return std::sqrt(off / all);
 }
 
 MeasuredCells in_material(const MeasuredCells& measured, const CellSet& cells, const AveragedSprings& of,

@@ -30,7 +30,7 @@ struct MeasureOptions {
 struct MeasuredBody {
   MeasuredCells cells;           ///< of the law that they were measured with
   int as_averaged = 0;           ///< cells that keep the form of averaged springs
-  double error = 0;              ///< under a load that was not used: rms displacement off the fine lattice, relative
+  double error = 0;              ///< under loads that were not used: rms displacement off the fine lattice, relative
   double error_of_averaged = 0;  ///< the same of averaged springs in all cells
 };
 
@@ -43,7 +43,7 @@ struct MeasuredBody {
 /// @throws std::runtime_error "interrupted", or if a state is not found
 MeasuredBody measure_cells(const MeasuredIn& in, const MeasureOptions& options = {});
 
-/// The fine lattice, on its supports, under a load that cells are not measured by.
+/// The fine lattice, on its supports, under loads of unit work that cells are not measured by.
 class FineTruth {
  public:
   /// @param in the lattices and their law, which must outlive it
@@ -57,7 +57,7 @@ class FineTruth {
   const MeasuredIn& in_;
   Eigen::SparseMatrix<double, Eigen::RowMajor> P_;
   Eigen::VectorXd volume_;
-  NodalVectors load_, truth_;  ///< of the fine nodes
+  Eigen::MatrixXd load_, truth_;  ///< of the fine nodes, a load per column
 };
 
 /// Measured cells in another material: shear moduli in proportion, the bulk modulus on the mean strain as it is there.

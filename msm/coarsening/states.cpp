@@ -16,7 +16,7 @@ namespace springproof {
 namespace {
 
 constexpr int body_forces = 24, marks = 24, wrenches = 2 * marks;
-constexpr double tolerance = 1e-8;
+constexpr double tolerance = 1e-5;
 
 /// Numbers from [-1/2, 1/2), one after the other.
 class Noise {

@@ -12,6 +12,7 @@
 #include "msm/dynamics/terms/mass_average.h"
 #include "msm/laws/capabilities.h"
 #include "msm/laws/nodal_gradients.h"
+#include "msm/laws/stiffness_of_cells.h"
 #include "msm/multigrid/cell_stiffness.h"
 
 namespace springproof {
@@ -137,12 +138,6 @@ double cell_frequency_squared(const CellMatrix& K, double full, double theta) {
           .setConstant((m == n ? alpha - beta * theta : 0.0) + beta * theta * A(m, n));
   return std::min(symmetric_eigenvalues(K, full / 8 * M)[23], MassAverage::largest_gain(theta) * lumped);
 }
-
-/// Stiffness of a cell by its number, and whether that of all full cells of one edge is the same.
-struct StiffnessOfCells {
-  std::function<CellMatrix(std::size_t)> of;
-  bool full_alike;
-};
 
 /// By cells: no squared frequency is above the largest that a cell has alone, with any shares of its
 /// nodes' masses that add up over the cells of a node (Irons and Treharne).  A cell's share is in proportion to its own

@@ -32,8 +32,9 @@ CellForces<Real>::CellForces(const MassSpringModel& model, InstructionSet set, c
     for (int& by : c.by) by = order_.place[by];
   }
   if (!can(model, Capability::cell_kernels) || (viscous_ && dashpots.shift > 0))
-    throw std::invalid_argument("cell forces are of averaged springs, without shift");
-  list_.springs = averaged_constants<Real>(*averaged_springs_of(model), 1);
+    throw std::invalid_argument("cell forces are of averaged springs, without shift, or measured cells");
+  const AveragedSprings* averaged = averaged_springs_of(model);
+  if (averaged) list_.springs = averaged_constants<Real>(*averaged, 1);
   list_.dashpots = averaged_constants<Real>(dashpots, time);
   list_.boxes = model.network.cells.kind() == CellKind::boxes;
   for (int i = 0; i < 3; ++i) {
@@ -41,6 +42,7 @@ CellForces<Real>::CellForces(const MassSpringModel& model, InstructionSet set, c
     list_.per_proportion[i] = static_cast<Real>(1 / model.network.cells.proportions[i]);
   }
   store_cells(model.network);
+  if (!averaged) store_forms(*law_of<MeasuredCells>(model));
   if (law_of<Anchors>(model)) store_anchors(model.network);
 }
 
@@ -71,6 +73,17 @@ void CellForces<Real>::store_cells(const Network& network) {
 }
 
 template <class Real>
+void CellForces<Real>::store_forms(const MeasuredCells& law) {
+  static_assert(cell_number::of_form == numbers_of_form);
+  const std::size_t cells = kernels_->cell_list.cells;
+  forms_.assign(numbers_of_form * cells * order_.plan.blocks, Real(0));
+  for (std::size_t at = 0; at < order_.cells.size(); ++at)
+    for (int number = 0; number < numbers_of_form; ++number)
+      forms_[numbers_of_form * cells * (at / cells) + number * cells + at % cells] =
+          static_cast<Real>(law.form[numbers_of_form * order_.cells[at] + number]);
+}
+
+template <class Real>
 void CellForces<Real>::store_anchors(const Network& network) {
   for (const int number : order_.anchors) {
     const Anchor& a = network.anchors[number];
@@ -97,6 +110,7 @@ void CellForces<Real>::add_blocks(long begin, long end, const Padded<Real>* x, c
   list.blocks = end - begin;
   list.corners = corners_.data() + 8 * kernels_->cell_list.cells * begin;
   list.numbers = numbers_.data() + cell_number::count * kernels_->cell_list.cells * begin;
+  if (!forms_.empty()) list.forms = forms_.data() + numbers_of_form * kernels_->cell_list.cells * begin;
   if (viscous_)
     kernels_->cell_list.viscous_forces(list, x, s, f);
   else

@@ -1,4 +1,4 @@
-// Forces of averaged springs in cells that the body may fill in part, by the kernels for lists of cells.
+// Forces of averaged springs, or measured cells, in cells that the body may fill in part, by the kernels for lists.
 #pragma once
 
 #include "msm/kernels/cell_order.h"
@@ -7,9 +7,9 @@
 
 namespace springproof {
 
-/// Internal forces of a model of averaged springs, with anchors or without; keeps no reference to the model.  `x` are
-/// displacements.
-/// Real = double: equal to forces() (msm/laws/laws.h) to 1e-12 of the largest force; float: 1e-5.
+/// Internal forces of a model of averaged springs, or measured cells, with anchors or without; keeps no reference to
+/// the model.  `x` are displacements. Real = double: equal to forces() (msm/laws/laws.h) to 1e-12 of the largest force;
+/// float: 1e-5.
 template <class Real>
 class CellForces : public BlockForces<Real> {
  public:
@@ -39,6 +39,7 @@ class CellForces : public BlockForces<Real> {
   };
 
   void store_cells(const Network& network);
+  void store_forms(const MeasuredCells& law);
   void store_anchors(const Network& network);
 
   const Kernels<Real>* kernels_;
@@ -46,7 +47,7 @@ class CellForces : public BlockForces<Real> {
   bool viscous_;
   CellOrder order_;
   std::vector<int> corners_;
-  std::vector<Real> numbers_;
+  std::vector<Real> numbers_, forms_;
   CellList<Real> list_;
   std::vector<Held> anchors_;
   std::vector<CarriedPoint> carried_;  ///< places

@@ -3,6 +3,7 @@
 
 #include "msm/kernels/block_rows.h"
 #include "msm/kernels/cell_kernels.h"
+#include "msm/kernels/dense_kernels.h"
 #include "msm/kernels/instruction_set.h"
 #include "msm/kernels/lattice_kernels.h"
 #include "msm/kernels/list_kernels.h"
@@ -17,6 +18,7 @@ struct Kernels {
   ListKernels<Real> list;
   CellListKernels<Real> cell_list;
   BlockRowKernels<Real> rows;
+  DenseKernels<Real> dense;
 };
 
 /// @param set usable here

@@ -106,6 +106,7 @@ struct ListKernels {
 /// [1/m].
 namespace cell_number {
 constexpr int area = 0, mean = 1, mixed = 4, variance = 7, per_edge = 10, count = 11;
+constexpr int of_form = 171;  ///< MeasuredCells
 }  // namespace cell_number
 
 /// Cells in blocks of as many as a kernel computes together; an unused place of the last block repeats a cell without
@@ -113,9 +114,10 @@ constexpr int area = 0, mean = 1, mixed = 4, variance = 7, per_edge = 10, count 
 template <class Real>
 struct CellList {
   long blocks = 0;
-  const int* corners = nullptr;         ///< places; per block those of each corner x + 2 y + 4 z in turn
-  const Real* numbers = nullptr;        ///< per block each of cell_number in turn
-  LatticeAveraged<Real> springs = {};   ///< moduli, hourglass stiffness times G / 8 [Pa]
+  const int* corners = nullptr;   ///< places; per block those of each corner x + 2 y + 4 z in turn
+  const Real* numbers = nullptr;  ///< per block each of cell_number in turn
+  const Real* forms = nullptr;    ///< of measured cells: per block each number of MeasuredCells::form in turn [N/m]
+  LatticeAveraged<Real> springs = {};   ///< moduli, hourglass stiffness times G / 8 [Pa]; of measured cells no curve
   LatticeAveraged<Real> dashpots = {};  ///< the same times the time of retardation [s]; without a curve
   bool boxes = false;                   ///< full cells that are no cubes: l that of the cube of their volume, rho p_i^2
   Real proportions[3] = {1, 1, 1};      ///< CellSet::proportions

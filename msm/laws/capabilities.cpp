@@ -28,19 +28,19 @@ bool springs_at_rest(const Network& network) {
 /// Why the laws of a model cannot together, each of which can.
 std::string together_lack(const MassSpringModel& model, Capability what) {
   using enum Capability;
-  const bool averaged = law_of<AveragedSprings>(model) != nullptr, springs = law_of<Springs>(model) != nullptr,
-             dispersion = law_of<MomentumDispersion>(model) != nullptr;
+  const bool averaged = law_of<AveragedSprings>(model) != nullptr, measured = law_of<MeasuredCells>(model) != nullptr,
+             springs = law_of<Springs>(model) != nullptr, dispersion = law_of<MomentumDispersion>(model) != nullptr;
   switch (what) {
     case lattice_kernels:
     case gpu:
       return each_law_once(model) && !(averaged && model.laws.size() > 1) && (springs || !dispersion) ? "" : in_kernels;
     case cell_kernels:
-      return each_law_once(model) && averaged ? "" : in_kernels;
+      return each_law_once(model) && averaged != measured ? "" : in_kernels;
     case list_kernels:
     case list_stiffness:
       return each_law_once(model) && springs ? "" : in_kernels;
     case cut_multigrid:
-      return averaged ? "" : "it has no averaged springs";
+      return averaged != measured ? "" : "it has no averaged springs or measured cells";
     case nodal_pressures:
       return dispersion ? "" : "it has no momentum dispersion";
     case viscosity:

@@ -165,6 +165,24 @@ DeformationForm form_of(const AveragedSprings& law, const CellShape& cell) {
   return M;
 }
 
+AveragedSprings mean_springs(const MeasuredCells& law, const CellSet& cells) {
+  Eigen::Matrix<double, 6, 6> sum = Eigen::Matrix<double, 6, 6>::Zero();
+  double volume = 0;
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    const CellShape cell = cells.shape(c);
+    sum += cell.edge * cell.edge * law.form_of_cell(c).topLeftCorner<6, 6>();
+    volume += cell.volume();
+  }
+  const double on_axes = sum.topLeftCorner<3, 3>().trace(), all = sum.topLeftCorner<3, 3>().sum(),
+               shears = sum.bottomRightCorner<3, 3>().trace();
+  AveragedSprings springs;
+  springs.shear_modulus = ((3 * on_axes - all) / 6 + shears) / (5 * volume);
+  springs.lame_lambda = all / (9 * volume) - 2 * springs.shear_modulus / 3;
+  const double nu = springs.lame_lambda / (2 * (springs.lame_lambda + springs.shear_modulus));
+  springs.hourglass = HourglassStiffness::of_pattern(2, nu, true, true);
+  return springs;
+}
+
 const char* MeasuredCells::lacks(Capability what) const {
   return what == Capability::equal_cells ? "differ from cell to cell" : nullptr;
 }

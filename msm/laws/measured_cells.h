@@ -23,6 +23,10 @@ DeformationRows deformation_of(const CellShape& cell);
 /// The form M of a cell of averaged springs at rest [N/m]: energy y.M y / 2.
 DeformationForm form_of(const AveragedSprings& law, const CellShape& cell);
 
+struct MeasuredCells;
+/// Averaged springs of the moduli that measured cells have in the mean over their volume.
+AveragedSprings mean_springs(const MeasuredCells& law, const CellSet& cells);
+
 /// Numbers of a symmetric form: its lower triangle row by row.
 inline constexpr int numbers_of_form = deformations_of_cell * (deformations_of_cell + 1) / 2;
 
@@ -30,7 +34,10 @@ inline constexpr int numbers_of_form = deformations_of_cell * (deformations_of_c
 /// rigid motion has no energy, and none can be negative while the forms are not.
 struct MeasuredCells {
   /// What solvers, kernels and the time step use of this law.
-  static constexpr LawTraits traits = {"measured cells", Reach::cells, {Capability::cells_of_any_shape}};
+  static constexpr LawTraits traits = {
+      "measured cells",
+      Reach::cells,
+      {Capability::cell_kernels, Capability::cells_of_any_shape, Capability::cut_multigrid}};
   /// Why it cannot what its traits say; nullptr: it can (law_traits.h).
   const char* lacks(Capability what) const;
 

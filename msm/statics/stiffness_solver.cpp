@@ -20,7 +20,18 @@ namespace {
 constexpr double worst_residual = 1e-6;   // attributed to round-off; for mechanisms the estimate is unbounded
 constexpr double inner_tolerance = 1e-6;  // of the symmetric solves that precondition GMRES
 constexpr int most_inner_iterations = 4000;
-constexpr long measured_direct_limit = 40000;  // of measured cells, which have no multigrid of their own
+
+// Measured cells have no mixed form: where their volume is this many times as stiff as their shape (nu = 0.49) they are
+// factored up to this many unknowns.
+constexpr double stiff_volume = 50;
+constexpr long stiff_volume_limit = 40000;
+
+bool has_stiff_volume(const MassSpringModel& model) {
+  const auto* measured = law_of<MeasuredCells>(model);
+  if (!measured) return false;
+  const AveragedSprings mean = mean_springs(*measured, model.network.cells);
+  return mean.lame_lambda > stiff_volume * mean.shear_modulus;
+}
 
 void assemble(const MassSpringModel& model, const NodalVectors& x, Tangent& K) {
   if (K.local.nodes() == 0) K.local = BlockMatrix(model.network);
@@ -182,7 +193,7 @@ bool StiffnessSolver::stable() const {
 std::unique_ptr<StiffnessSolver> solver_for(const MassSpringModel& model, const std::vector<char>& fixed,
                                             long direct_limit) {
   if (!can(model, Capability::energy)) return std::make_unique<UnsymmetricSolver>(model, fixed, direct_limit);
-  if (law_of<MeasuredCells>(model)) direct_limit = std::max(direct_limit, measured_direct_limit);
+  if (has_stiff_volume(model)) direct_limit = std::max(direct_limit, stiff_volume_limit);
   if (std::count(fixed.begin(), fixed.end(), 0) <= direct_limit) return std::make_unique<CholeskySolver>(model, fixed);
   if (can(model, Capability::equal_cells))
     return std::make_unique<LatticeSolver>(model, fixed, "CG + multigrid", lattice_levels(model.network, fixed),

@@ -212,6 +212,19 @@ sed 's/^voxels = .*/voxels = 30\naccuracy = 0.05/' cut.toml >several.toml
 same_rows several.toml hybmss_avg
 grep -q '"version": 3' hybmss_avg.json || fail "a refined body has no cells of several sizes"
 cp hybmss_avg.json several.json
+# Measured cells, on the supports of the case: 171 numbers of each.
+sed -e 's/^geo = .*/geo = "l_bracket.geo"/; s/^size_m = .*/size_m = [0.1, 0.05, 0.1]\nvoxel_edge_m = 0.01\ncoarsened = true/; /^cells = /d; s/x_min/wall/; s/x_max/end/' template.toml >measured.toml
+same_rows measured.toml hybmss_avg
+grep -q '"form_N_m": ' hybmss_avg.json && ! grep -q '"averaged_springs": ' hybmss_avg.json || fail "measured cells are not in their file"
+cp hybmss_avg.json measured.json
+export_to own.toml --model hybmss_avg --to springs --out measured.npz
+if [ -n "$numpy" ]; then
+  for form in json npz; do
+    off=$("$numpy" springs.py measured.$form | awk '{ print $3 }')
+    awk -v off="$off" 'BEGIN { exit !(off != "" && off < 1e-12) }' || fail "forces of measured.$form by examples/springs.py: off by '$off'"
+  done
+fi
+export_to own.toml --model hybmss_avg --whole-cubes --to springs --out whole_bracket.json
 
 # Statics by the file alone, in another program: the body hangs from its anchors as compare says.
 if [ -n "$numpy" ]; then

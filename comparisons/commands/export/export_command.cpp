@@ -21,6 +21,7 @@
 #include "meshes/patches/select_patches.h"
 #include "msm/exchange/lammps.h"
 #include "msm/laws/capabilities.h"
+#include "msm/models.h"
 #include "msm/parameters/made_of.h"
 #include "msm/topology/cubic_lattice.h"
 #include "problem/case_file/external.h"
@@ -127,7 +128,8 @@ Experiment one_of_each(Experiment e, const ExportRequest& request) {
     e.body.voxel_edges.clear();
     e.body.voxel_counts = {*request.voxels};
   }
-  if (e.body.accuracies.empty()) {  // for the loads the cells of several sizes are refined
+  const bool measured = resolve(e.models.front()).coarsened.value_or(e.body.coarsened);
+  if (e.body.accuracies.empty() && !measured) {  // cells are refined for the loads, and measured on the supports
     e.loads.clear();
     e.load_locations.clear();
   }
@@ -180,8 +182,9 @@ SpringsFile springs_of(const ExportRequest& request, bool cut = false) {
           fmt::format("{}: body.accuracy: cells of several sizes are cut cells (allowed: --to springs without "
                       "--whole-cubes, or --voxels N)",
                       request.what));
-    e.body.cut = false;
-    for (ModelChoice& m : e.models) m.options.erase("cut");
+    e.body.cut = e.body.coarsened = false;
+    for (ModelChoice& m : e.models)
+      for (const char* of_cut_cells : {"cut", "coarsened"}) m.options.erase(of_cut_cells);
   }
   Status status(false);
   const Status::Working working(status, request.what);

@@ -15,8 +15,8 @@ extern const CompiledWith compiled_with = {false, false};
 
 template <class Real>
 Kernels<Real> all_kernels() {
-  return {lattice_kernels<Real>(), cell_kernels<Real>(), list_kernels<Real>(), cell_list_kernels<Real>(),
-          block_row_kernels<Real>()};
+  return {lattice_kernels<Real>(),   cell_kernels<Real>(),      list_kernels<Real>(),
+          cell_list_kernels<Real>(), block_row_kernels<Real>(), dense_kernels<Real>()};
 }
 
 template Kernels<double> all_kernels();

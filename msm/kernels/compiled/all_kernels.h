@@ -3,6 +3,7 @@
 
 #include "msm/kernels/block_rows.h"
 #include "msm/kernels/cell_kernels.h"
+#include "msm/kernels/dense_kernels.h"
 #include "msm/kernels/lattice_kernels.h"
 #include "msm/kernels/list_kernels.h"
 
@@ -18,5 +19,7 @@ template <class Real>
 CellListKernels<Real> cell_list_kernels();
 template <class Real>
 BlockRowKernels<Real> block_row_kernels();
+template <class Real>
+DenseKernels<Real> dense_kernels();
 
 }  // namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE

@@ -1,5 +1,5 @@
-// Averaged springs of a list of cells.  The signed sums of the corners' displacements give F, whatever part of a cell
-// is filled, by four products per entry: mean_gradients() has the same signs.
+// Averaged springs, or the forms of measured cells, of a list of cells.  The signed sums of the corners' displacements
+// give F, whatever part of a cell is filled, by four products per entry: mean_gradients() has the same signs.
 #include "msm/kernels/compiled/all_kernels.h"
 
 #include "msm/kernels/compiled/averaged_cells.h"
@@ -103,12 +103,111 @@ SPRINGPROOF_INLINE void add_hourglass_forces(const LatticeAveraged<Lanes<Real>>&
   }
 }
 
+/// E's eigenvalues on its diagonal, eigenvectors as the columns of Q, by Jacobi's rotations: four rounds leave less
+/// than round-off.
+template <class Real>
+SPRINGPROOF_INLINE void find_eigenvectors(Lanes<Real> (&E)[3][3], Lanes<Real> (&Q)[3][3]) {
+  using V = Lanes<Real>;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) Q[i][j] = i == j ? 1 : 0;
+  for (int round = 0; round < 4; ++round)
+    for (int p = 0; p < 3; ++p) {
+      const int q = (p + 1) % 3, r = (p + 2) % 3;
+      const V a = E[p][q], d = E[q][q] - E[p][p];
+      V t = Real(2) * a / (stdx::abs(d) + stdx::sqrt(d * d + Real(4) * a * a) + Real(1e-30));
+      stdx::where(d < Real(0), t) = -t;
+      const V c = inverse_root<Real>(Real(1) + t * t), s = t * c, of_p = E[p][r], of_q = E[q][r];
+      E[p][p] -= t * a;
+      E[q][q] += t * a;
+      E[p][q] = E[q][p] = 0;
+      E[p][r] = E[r][p] = c * of_p - s * of_q;
+      E[q][r] = E[r][q] = s * of_p + c * of_q;
+      for (int k = 0; k < 3; ++k) {
+        const V u = Q[k][p], v = Q[k][q];
+        Q[k][p] = c * u - s * v;
+        Q[k][q] = s * u + c * v;
+      }
+    }
+}
+
+/// ln(1 + t) / t.
+template <class Real>
+SPRINGPROOF_INLINE Lanes<Real> logarithm_over(const Lanes<Real>& t) {
+  using V = Lanes<Real>;
+  const V series =
+      Real(1) - t * (Real(1.0 / 2) - t * (Real(1.0 / 3) - t * (Real(1.0 / 4) - t * (Real(1.0 / 5) - t / 6))));
+  V ratio = logarithm_of_1_and<Real>(t) / t;
+  stdx::where(t * t < Real(1e-6), ratio) = series;
+  return ratio;
+}
+
+constexpr int strain_of[6][2] = {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {2, 0}, {0, 1}};
+
+/// s = M y, M by its lower triangle.
+template <class Real>
+SPRINGPROOF_INLINE void times_form(const Real* form, const Lanes<Real> (&y)[18], Lanes<Real> (&s)[18]) {
+  for (int i = 0; i < 18; ++i) {
+    Lanes<Real> sum = 0;
+    for (int j = 0; j < i; ++j, form += cells<Real>) {
+      const Lanes<Real> M = load(form);
+      sum += M * y[j];
+      s[j] += M * y[i];
+    }
+    s[i] = sum + load(form) * y[i];
+    form += cells<Real>;
+  }
+}
+
+/// P = dW/dF over the edge, and w of the patterns over their norm, of MeasuredCells; v = F^T S.
+template <class Real>
+SPRINGPROOF_INLINE void measured_stress(const Real* form, const Cells<Real>& cell, const Lanes<Real> (&D)[3][3],
+                                        const Lanes<Real> (&F)[3][3], const Lanes<Real>& dilatation,
+                                        const Lanes<Real> (&v)[4][3], Lanes<Real> (&P)[3][3], Lanes<Real> (&w)[4][3]) {
+  using V = Lanes<Real>;
+  const V edge = Real(1) / cell.per_edge;
+  V E[3][3], Q[3][3], half_log[3], y[18], s[18];
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      E[i][j] = D[i][j] + D[j][i] + (D[0][i] * D[0][j] + D[1][i] * D[1][j] + D[2][i] * D[2][j]);
+  stdx::where(dilatation <= Real(-1), E[0][0]) = Real(__builtin_nan(""));
+  find_eigenvectors<Real>(E, Q);
+  for (int k = 0; k < 3; ++k) half_log[k] = Real(0.5) * logarithm_of_1_and<Real>(E[k][k]);
+  for (int e = 0; e < 6; ++e) {
+    const V *a = Q[strain_of[e][0]], *b = Q[strain_of[e][1]];
+    y[e] = (a[0] * b[0] * half_log[0] + a[1] * b[1] * half_log[1] + a[2] * b[2] * half_log[2]) * edge;
+    if (e > 2) y[e] += y[e];
+  }
+  for (int m = 0; m < 4; ++m)
+    for (int j = 0; j < 3; ++j) y[6 + 3 * m + j] = (m < 3 ? Real(0.5) : Real(1)) * edge * v[m][j];
+  times_form<Real>(form, y, s);
+  for (int m = 0; m < 4; ++m)
+    for (int j = 0; j < 3; ++j) w[m][j] = (m < 3 ? Real(0.5) : Real(1)) * s[6 + 3 * m + j];
+  V T[3][3], FQ[3][3];
+  for (int p = 0; p < 3; ++p)
+    for (int q = p; q < 3; ++q) {  // in axes of the eigenvectors, times the divided difference of the half logarithm
+      V along = 0;
+      for (int e = 0; e < 6; ++e) {
+        const int i = strain_of[e][0], j = strain_of[e][1];
+        along += s[e] * (e < 3 ? Q[i][p] * Q[i][q] : Q[i][p] * Q[j][q] + Q[j][p] * Q[i][q]);
+      }
+      const V above = E[q][q] + Real(1), t = (E[p][p] - E[q][q]) / above;
+      T[p][q] = T[q][p] = along * (p == q ? V(1) : logarithm_over<Real>(t)) / above;  // twice it
+    }
+  for (int i = 0; i < 3; ++i)
+    for (int p = 0; p < 3; ++p) FQ[i][p] = F[i][0] * Q[0][p] + F[i][1] * Q[1][p] + F[i][2] * Q[2][p];
+  for (int i = 0; i < 3; ++i) {
+    V of_row[3];
+    for (int q = 0; q < 3; ++q) of_row[q] = FQ[i][0] * T[0][q] + FQ[i][1] * T[1][q] + FQ[i][2] * T[2][q];
+    for (int j = 0; j < 3; ++j) P[i][j] = of_row[0] * Q[j][0] + of_row[1] * Q[j][1] + of_row[2] * Q[j][2];
+  }
+}
+
 /// Forces of a vector of cells, the lanes from `at` of their block; `rates`: velocities of the corners.
 template <LatticeCurve curve, bool viscous, class Real>
-SPRINGPROOF_INLINE void forces_of_cells(const CellList<Real>& list, const Real* numbers, int at, Corners<Real>& u,
+SPRINGPROOF_INLINE void forces_of_cells(const CellList<Real>& list, long block, int at, Corners<Real>& u,
                                         const Corners<Real>& rates) {
   using V = Lanes<Real>;
-  const Cells<Real> c(numbers + at);
+  const Cells<Real> c(list.numbers + cell_number::count * cells<Real> * block + at);
   V D[3][3], S[3][4], F[3][3], inverse_transposed[3][3], dilatation, P[3][3], v[4][3], w[4][3];
   patterns_of_cells<Real>(u, at, c, D, S);
   if (list.boxes) stretch(list, D, S);
@@ -119,10 +218,14 @@ SPRINGPROOF_INLINE void forces_of_cells(const CellList<Real>& list, const Real* 
     stdx::where(dilatation < Real(-1), dilatation) = Real(__builtin_nan(""));
   for (auto& of_pattern : w)
     for (V& entry : of_pattern) entry = 0;
-  const LatticeAveraged<V> springs = times_area(list.springs, c.area);
   turned_back(F, S, v);
-  add_hourglass_forces(springs, c, v, w);
-  first_stress<curve>(springs, D, inverse_transposed, dilatation, P);
+  if constexpr (curve == LatticeCurve::none) {
+    measured_stress<Real>(list.forms + cell_number::of_form * cells<Real> * block + at, c, D, F, dilatation, v, P, w);
+  } else {
+    const LatticeAveraged<V> springs = times_area(list.springs, c.area);
+    add_hourglass_forces(springs, c, v, w);
+    first_stress<curve>(springs, D, inverse_transposed, dilatation, P);
+  }
   if constexpr (viscous) {
     const LatticeAveraged<V> dashpots = times_area(list.dashpots, c.area);
     V rate[3][3], S_rate[3][4];
@@ -169,7 +272,7 @@ void forces_of_list(const CellList<Real>& list, const Padded<Real>* u, const Pad
       }
     }
     for (int lane = 0; lane < cells<Real>; lane += lanes<Real>)
-      forces_of_cells<curve, viscous>(list, list.numbers + cell_number::count * cells<Real> * b, lane, at, rates);
+      forces_of_cells<curve, viscous>(list, b, lane, at, rates);
     for (int n = 0; n < 8; ++n) scatter(at[n], places + n * cells<Real>, f);
   }
 }
@@ -184,7 +287,7 @@ void forces_of_curve(const CellList<Real>& list, const Padded<Real>* u, const Pa
     case LatticeCurve::neo_hooke_isochoric:
       return forces_of_list<LatticeCurve::neo_hooke_isochoric, viscous>(list, u, s, f);
     case LatticeCurve::none:
-      return;
+      return forces_of_list<LatticeCurve::none, viscous>(list, u, s, f);
   }
 }
 

@@ -207,6 +207,10 @@ AnchoredNodes::AnchoredNodes(const Network& network, std::vector<char> fixed_unk
       fixed(std::move(fixed_unknowns)),
       corners(network.nodes() - static_cast<int>(network.anchors.size())) {}
 
+StiffnessOfCells averaged_cells(const AveragedSprings& law, const CutLevel& level) {
+  return {[&](std::size_t c) { return law.cell_matrix(level.shape(c)); }, true};
+}
+
 std::vector<char> AnchoredNodes::fixed_corners() const {
   std::vector<char> corner = unknowns_of_corners(), own = corner;
   for (const CarriedPoint& p : carried) std::fill_n(own.begin() + 3 * p.point, 3, 0);

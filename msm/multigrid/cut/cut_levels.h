@@ -42,6 +42,9 @@ struct CutLevel {
   void prolongate(Eigen::VectorXf& coarse, const CutLevel& next, Eigen::VectorXf& u) const;
 };
 
+/// Averaged springs in the cells of a level; both must outlive it.
+StiffnessOfCells averaged_cells(const AveragedSprings& law, const CutLevel& level);
+
 /// The nodes of a network of cut cells that are anchored, and those that are corners of cells.
 struct AnchoredNodes {
   std::vector<Anchor> anchors;

@@ -53,7 +53,7 @@ std::vector<int> from_bottom_to_top(const std::vector<std::array<int, 3>>& place
 }  // namespace
 
 template <class Real>
-CutMatrix<Real>::CutMatrix(const AveragedSprings& law, double unit, const CutLevel& level,
+CutMatrix<Real>::CutMatrix(const StiffnessOfCells& cells, double unit, const CutLevel& level,
                            const std::vector<char>& fixed)
     : point_(from_bottom_to_top(level.point)), row_(point_.size()), begin_{0} {
   const int points = rows();
@@ -64,7 +64,7 @@ CutMatrix<Real>::CutMatrix(const AveragedSprings& law, double unit, const CutLev
   for (const Anchor& a : level.anchors)
     for (const int q : a.corners) apart[q] = 1;
   const auto is_inside = [&](int p) {  // of eight full cells of one size
-    if (apart[p] || at.begin[p + 1] - at.begin[p] != 8) return false;
+    if (!cells.full_alike || apart[p] || at.begin[p + 1] - at.begin[p] != 8) return false;
     for (int e = at.begin[p]; e < at.begin[p + 1]; ++e) {
       const int c = at.value[e];
       if (level.filled[c].fraction != 1 || level.cubes[c].size != level.cubes[at.value[at.begin[p]]].size) return false;
@@ -104,7 +104,7 @@ CutMatrix<Real>::CutMatrix(const AveragedSprings& law, double unit, const CutLev
   }
   block_.assign(9 * static_cast<std::size_t>(blocks) + 1, Real(0));
 
-  const CellStiffnessMatrix full = law.cell_matrix({level.edge}) / unit;
+  std::map<int, CellStiffnessMatrix> of_full;  // by size
   for (std::size_t c = 0; c < level.corners.size(); ++c) {
     const Hexahedron& corners = level.corners[c];
     std::array<bool, 8> needed;
@@ -115,8 +115,10 @@ CutMatrix<Real>::CutMatrix(const AveragedSprings& law, double unit, const CutLev
       any |= needed[m];
     }
     if (!any) continue;
-    const CellStiffnessMatrix K = level.filled[c].fraction == 1 ? CellStiffnessMatrix(full * level.cubes[c].size)
-                                                                : law.cell_matrix(level.shape(c)) / unit;
+    const bool is_full = cells.full_alike && level.filled[c].fraction == 1;
+    const auto known = is_full ? of_full.find(level.cubes[c].size) : of_full.end();
+    const CellStiffnessMatrix K = known != of_full.end() ? known->second : cells.of(c) / unit;
+    if (is_full) of_full.try_emplace(level.cubes[c].size, K);
     for (int m = 0; m < 8; ++m)
       for (int n = 0; n < 8 && needed[m]; ++n)
         for_each_carrier(carriers, corners[m], [&](int p, double v) {

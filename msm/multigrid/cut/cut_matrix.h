@@ -6,6 +6,7 @@
 
 #include "msm/kernels/kernels.h"
 #include "msm/laws/averaged_springs.h"
+#include "msm/laws/stiffness_of_cells.h"
 
 namespace springproof {
 
@@ -17,9 +18,9 @@ template <class Real>
 class CutMatrix {
  public:
   CutMatrix() = default;
-  /// Averaged springs of the cells, in units of `unit` [N/m].  Rows at anchors, and those that are coupled with `fixed`
-  /// unknowns (empty: none), are not shared, so that they can be changed.
-  CutMatrix(const AveragedSprings& law, double unit, const CutLevel& level, const std::vector<char>& fixed);
+  /// Of the cells, in units of `unit` [N/m].  Rows at anchors, and those that are coupled with `fixed` unknowns (empty:
+  /// none), are not shared, so that they can be changed.
+  CutMatrix(const StiffnessOfCells& cells, double unit, const CutLevel& level, const std::vector<char>& fixed);
   /// Rounded.
   template <class Other>
   explicit CutMatrix(const CutMatrix<Other>& other);

@@ -244,7 +244,7 @@ void CutMixedMultigrid::Level::solve_coarsest(const CoarsestFactors& factors) {
 
 CutMixedMultigrid::CutMixedMultigrid(const MassSpringModel& model, const std::vector<char>& fixed)
     : nodes_(model.network, fixed), network_(model.network) {
-  const AveragedSprings& law = *averaged_springs_of(model);
+  const AveragedSprings &law = *averaged_springs_of(model), springs = springs_alone(law);
   const double l = network_.cells.edge, unit = law.shear_modulus * l,
                kappa = (law.lame_lambda - law.shear_modulus) / law.shear_modulus;
   gradient_.resize(24, static_cast<Eigen::Index>(network_.cells.size()));
@@ -260,10 +260,11 @@ CutMixedMultigrid::CutMixedMultigrid(const MassSpringModel& model, const std::ve
     const bool finest = levels_.empty();
     const std::vector<char> fixed_here = finest ? nodes_.fixed_corners() : std::vector<char>{};
     if (&lattice == &lattices.back()) {  // the pressure is eliminated there
-      take_matrix(CutMatrix<double>(law, unit, lattice, fixed_here), unit, fixed_here, lattice);
+      take_matrix(CutMatrix<double>(averaged_cells(law, lattice), unit, lattice, fixed_here), unit, fixed_here,
+                  lattice);
       coarsest_.factor(lattice.A.sparse());
     }
-    CutMatrix<double> of_cells(springs_alone(law), unit, lattice, fixed_here);
+    CutMatrix<double> of_cells(averaged_cells(springs, lattice), unit, lattice, fixed_here);
     take_matrix(of_cells, unit, fixed_here, lattice);
     if (finest) K_ = std::move(of_cells);
     levels_.push_back(std::make_unique<Level>(

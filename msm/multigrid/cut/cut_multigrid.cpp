@@ -12,11 +12,18 @@ constexpr int relaxations = 2;  // before and after the coarser lattice
 }  // namespace
 
 CutMultigrid::CutMultigrid(const MassSpringModel& model, const std::vector<char>& fixed)
-    : nodes_(model.network, fixed), unit_(averaged_springs_of(model)->shear_modulus * model.network.cells.edge) {
+    : nodes_(model.network, fixed) {
+  const auto* measured = law_of<MeasuredCells>(model);
+  const CellSet& cells = model.network.cells;
+  const AveragedSprings law = measured ? mean_springs(*measured, cells) : *averaged_springs_of(model);
+  unit_ = law.shear_modulus * cells.edge;
   for (CutLevel& lattice : cut_levels(model.network, nodes_)) {
     const bool finest = levels_.empty();
     const std::vector<char> fixed_here = finest ? nodes_.fixed_corners() : std::vector<char>{};
-    CutMatrix<double> of_cells(*averaged_springs_of(model), unit_, lattice, fixed_here);
+    CutMatrix<double> of_cells(finest && measured
+                                   ? StiffnessOfCells{[&](std::size_t c) { return measured->cell_matrix(cells, c); }}
+                                   : averaged_cells(law, lattice),
+                               unit_, lattice, fixed_here);
     take_matrix(of_cells, unit_, fixed_here, lattice);
     if (finest) K_ = std::move(of_cells);
     lattice.invert_anchored();

@@ -8,8 +8,9 @@
 
 namespace springproof {
 
-/// Symmetric V-cycle for the stiffness at rest of averaged springs and anchors: symmetric Gauss-Seidel over the points
-/// of each level, in single precision.  Anchored nodes are eliminated exactly.
+/// Symmetric V-cycle for the stiffness at rest of averaged springs, or measured cells, and anchors: symmetric
+/// Gauss-Seidel over the points of each level, in single precision.  Anchored nodes are eliminated exactly.  Levels
+/// above measured cells have averaged springs of their mean moduli.
 class CutMultigrid {
  public:
   /// Of a model that has Capability::cut_multigrid.
@@ -34,7 +35,7 @@ class CutMultigrid {
   };
 
   AnchoredNodes nodes_;
-  double unit_;          ///< of stiffness [N/m]
+  double unit_ = 0;      ///< of stiffness [N/m]
   CutMatrix<double> K_;  ///< of the cells, in units
   std::vector<std::unique_ptr<Level>> levels_;
   CoarsestFactors coarsest_;

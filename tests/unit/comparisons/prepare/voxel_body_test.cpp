@@ -362,6 +362,9 @@ const Mistake mistakes[] = {
      "ball.toml:*hybmss_avg: coarsened = true: its cells are not cut (allowed: cut cells of one size"},
     {"measured_with_a_shift", "\"emsm_random\"", "{ model = \"hybmss_avg\", shift = 0.4, coarsened = true }",
      "ball.toml:*hybmss_avg: coarsened = true: shift is for averaged springs"},
+    {"measured_of_another_law", "\"emsm_random\"",
+     "{ model = \"hybmss_avg\", curve = \"neo_hooke\", coarsened = true }",
+     "ball.toml:*hybmss_avg: coarsened = true: at large strain they follow Hencky's law"},
     {"shift_too_large", "\"emsm_random\"", "{ model = \"hybmss\", shift = 2 }", "ball.toml:*0 <= shift <= 1"},
     {"edge_too_long", "edge_m = 0.03", "edge_m = -3", "ball.toml:*edge_m"},
 };

@@ -53,20 +53,20 @@ DeformationForm random_form(const DeformationForm& of_springs, double low, doubl
 }
 
 TEST(LayeredMatrix, SolvesWhatLayersCouple) {
-  LayeredMatrix K({3, 2, 4});
-  Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(9, 9);
-  const int first[] = {0, 3, 5, 9};
+  LayeredMatrix K({37, 26, 41});
+  Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(104, 104);
+  const int first[] = {0, 37, 63, 104};
   for (int l = 0; l < 3; ++l) {
     const int n = first[l + 1] - first[l];
     const Eigen::MatrixXd A = noise(n, n, l + 1);
-    K.of(l) = A * A.transpose() + 20 * Eigen::MatrixXd::Identity(n, n);
+    K.of(l) = A * A.transpose() + 60 * Eigen::MatrixXd::Identity(n, n);
     dense.block(first[l], first[l], n, n) = K.of(l);
     if (l == 2) continue;
     K.below(l) = noise(first[l + 2] - first[l + 1], n, l + 7);
     dense.block(first[l + 1], first[l], K.below(l).rows(), n) = K.below(l);
     dense.block(first[l], first[l + 1], n, K.below(l).rows()) = K.below(l).transpose();
   }
-  const Eigen::MatrixXd x = noise(9, 2, 11);
+  const Eigen::MatrixXd x = noise(104, 11, 11);
   Eigen::MatrixXd b = dense * x;
   ASSERT_TRUE(K.factor());
   K.solve(b);

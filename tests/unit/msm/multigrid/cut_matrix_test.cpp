@@ -38,7 +38,8 @@ TEST(CutMatrix, IsTheTangentAtRest) {
         const MassSpringModel model = bar(refined, nu, shift);
         const Network& network = model.network;
         const AnchoredNodes nodes(network, std::vector<char>(network.X.size(), 0));
-        const CutMatrix<double> cells(*averaged_springs_of(model), 1, cut_levels(network, nodes).front(), {});
+        const CutLevel level = cut_levels(network, nodes).front();
+        const CutMatrix<double> cells(averaged_cells(*averaged_springs_of(model), level), 1, level, {});
         const Eigen::VectorXd x = field(network, 1);
         Eigen::VectorXd y, expected;
         nodes.multiply(cells, 1, x, y);
@@ -55,7 +56,8 @@ TEST(CutMatrix, StoresEqualRowsOnce) {
         .model;
   }();
   const AnchoredNodes nodes(model.network, std::vector<char>(model.network.X.size(), 0));
-  const CutMatrix<double> cells(*averaged_springs_of(model), 1, cut_levels(model.network, nodes).front(), {});
+  const CutLevel level = cut_levels(model.network, nodes).front();
+  const CutMatrix<double> cells(averaged_cells(*averaged_springs_of(model), level), 1, level, {});
   EXPECT_EQ(cells.rows(), 11 * 11 * 11);
   long entries = 0;
   for (int i = 0; i < cells.rows(); ++i)
@@ -67,7 +69,8 @@ TEST(CutMatrix, StoresEqualRowsOnce) {
 TEST(CutMatrix, SweepsFromZeroWithHalfOfTheRows) {
   const MassSpringModel model = bar(true, 0.25, 0);
   const AnchoredNodes nodes(model.network, std::vector<char>(model.network.X.size(), 0));
-  const CutMatrix<double> A(*averaged_springs_of(model), 1, cut_levels(model.network, nodes).front(), {});
+  const CutLevel level = cut_levels(model.network, nodes).front();
+  const CutMatrix<double> A(averaged_cells(*averaged_springs_of(model), level), 1, level, {});
   const std::vector<double> D = A.inverse_diagonal({});
   const Eigen::VectorXd b = field(model.network, 1).head(3 * A.rows());
   Eigen::VectorXd x = Eigen::VectorXd::Zero(b.size()), expected = x;

@@ -5,6 +5,7 @@
 
 #include "msm/embedding/boundary.h"
 #include "msm/models.h"
+#include "msm/periodic/laws_of_model.h"
 #include "support/zoo.h"
 
 namespace springproof::stiffness_solver_test {
@@ -38,11 +39,23 @@ MassSpringModel cut_cells() {
   return model;
 }
 
+/// The same cells with forms of their own: those of averaged springs, some softer and some stiffer.
+MassSpringModel measured_cells(double nu) {
+  MassSpringModel model = cut_cells();
+  const AveragedSprings law = averaged_law(test::model("hybmss_avg"), {1e4, nu, 1});
+  MeasuredCells measured;
+  for (std::size_t c = 0; c < model.network.cells.size(); ++c)
+    measured.add_form((0.5 + 0.25 * double(c % 4)) * form_of(law, model.network.cells.shape(c)));
+  model.laws = {measured, Anchors{}};
+  return model;
+}
+
 std::vector<Kind> kinds() {
   return {{"Cholesky", lattice("hybmss", {1, 1, 1}), all},
           {"CG + multigrid", lattice("hybmss", {1, 1, 1})},
           {"CG + multigrid", lattice("hybmss_avg", {1, 0.5, 2})},
           {"CG + multigrid", cut_cells()},
+          {"CG + multigrid", measured_cells(0.3)},
           {"CG + network multigrid", emsm("emsm_random", Dispersion::symmetric)},
           {"CG + network multigrid", emsm("emsm", Dispersion::symmetric)},
           {"GMRES + CG + network multigrid of the symmetric form", emsm("emsm_random", Dispersion::published)},
@@ -101,6 +114,13 @@ TEST_P(Solvers, SolveOnTheFreeUnknowns) {
     solver->multiply(expected, b);
     EXPECT_TRUE(solver->solve(b, 1e-11, 500, u).converged);
     EXPECT_LE((u - expected).norm(), 1e-7 * expected.norm());
+  }
+}
+
+TEST(SolverFor, FactorsMeasuredCellsWhoseVolumeIsStiff) {
+  for (const auto& [nu, name] : {std::pair{0.45, "CG + multigrid"}, std::pair{0.499, "Cholesky"}}) {
+    const MassSpringModel model = measured_cells(nu);
+    EXPECT_EQ(solver_for(model, held_at_the_left(model.network), 0)->name(), name) << nu;
   }
 }
 
