@@ -213,12 +213,12 @@ std::string measured_note(const Lattice& lattice, const MeasuredBody& measured) 
 /// Measures the cells of a lattice for all models and materials that need it, and notes how far they are off.
 /// @throws std::invalid_argument where averaged springs are as good.
 void measure_lattice(PreparedCase& prepared, Lattice& lattice) {
-  constexpr std::size_t most_cells = 10000;  // beyond, a finer lattice takes less time than measuring
-  if (lattice.cut->cells.size() > most_cells)
+  constexpr std::size_t most_measured = 10000;  // beyond, a finer lattice takes less time than measuring
+  if (lattice.cut->cells.size() > most_measured)
     throw std::invalid_argument(fmt::format(
         "coarsened: {} cells take longer to measure than a finer lattice to solve (allowed: up to {}); take larger "
         "cells, or averaged springs",
-        lattice.cut->cells.size(), most_cells));
+        lattice.cut->cells.size(), most_measured));
   std::set<std::string> held;  // along all axes; what a support leaves free is measured free
   for (const Load& load : prepared.loads) {
     if (!prescribes_displacement(load)) continue;
