@@ -364,6 +364,9 @@ bad 'none.stl' none.stl -E 5e3 --nu 0.45
 bad 'scale: 1e\+200 is no factor .allowed: 1e-30 to 1e\+30' icosahedron.stl -E 5e3 --nu 0.45 --scale 1e200
 bad 'the body spans 1.7e\+12 x .* m.*allowed: a longest side of 1e-06 to 1e\+09 m' icosahedron.stl -E 5e3 --nu 0.45 --scale 1e12
 bad 'nodes.mass_kg of the springs file: .*allowed' icosahedron.stl -E 5e3 --nu 0.45 --density 1e29 --scale 1e3
+# Loads that no body can obey, though a springs file has none.
+{ sed '/^accuracy/d' refined.toml; printf '[[load]]\non = "surface"\ndisplacement_m = [0.001, 0, 0]\n'; } >twice.toml
+bad "twice.toml:[0-9]+:1: load: 'surface' has the displacement x = 0.001 m at .*, where 'low' of the load in line [0-9]+ has 0 m" twice.toml
 cp icosahedron.stl CAPITALS.STL
 "$program" export CAPITALS.STL -E 5e3 --nu 0.45 --voxels 30 --to springs --out capitals.json >log 2>&1 || fail "an ending in capitals: $(cat log)"
 mkdir taken.json

@@ -12,6 +12,7 @@
 #include "comparisons/calculix/deck.h"
 #include "comparisons/commands/export/body_alone.h"
 #include "comparisons/commands/export/export_engines.h"
+#include "comparisons/prepare/case_checks.h"
 #include "comparisons/prepare/springs_of_case.h"
 #include "comparisons/run/prepare.h"
 #include "comparisons/sweep/find_cases.h"
@@ -171,7 +172,8 @@ Mesh carried_vertices(const ExportRequest& request, const PreparedCase& prepared
 
 /// `cut`: of cut cells where the model has them and the case does not say otherwise.
 SpringsFile springs_of(const ExportRequest& request, bool cut = false) {
-  Experiment e = is_body(request.what) ? body_alone(request) : one_of_each(read_case(request.what), request);
+  const Experiment of_case = is_body(request.what) ? Experiment() : read_case(request.what);
+  Experiment e = is_body(request.what) ? body_alone(request) : one_of_each(of_case, request);
   if (!request.cells.empty()) {
     if (e.body.is_voxels()) throw InputError("--cells: is for bodies of hexahedra; this one has --voxels N");
     e.body.cells = {cells_of_option(request.cells)};
@@ -189,6 +191,7 @@ SpringsFile springs_of(const ExportRequest& request, bool cut = false) {
   Status status(false);
   const Status::Working working(status, request.what);
   const PreparedCase prepared = prepare_lattices(e);
+  if (of_case.body.is_voxels()) check_supports(of_case, *prepared.body.tetrahedra.back());
   if (!e.patches.empty() && is_body(request.what)) refuse_whole_surface(prepared);
   const Topology of = prepared.models.front().row.topology;
   if (request.to != "springs" && (of == Topology::cells || of == Topology::centres))
