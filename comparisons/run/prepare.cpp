@@ -317,7 +317,10 @@ PreparedCase prepare_lattices(const Experiment& experiment) {
     progress::phase("cutting the body");
     experiment.body.is_voxels() ? prepare_voxel_body(prepared) : prepare_blocks(prepared);
     for (const Lattice& lattice : prepared.lattices) check_fineness(experiment.body, lattice.cells);
-    if (experiment.body.is_voxels()) check_supports(experiment, *prepared.body.tetrahedra.back());
+    if (experiment.body.is_voxels())
+      check_supports(experiment, *prepared.body.tetrahedra.back());
+    else if (!experiment.patches.empty())
+      check_supports(experiment, *prepared.lattices.front().mesh);
     return prepared;
   });
 }

@@ -95,6 +95,9 @@ edited "a reference that cannot be refined" "case.toml:17:9: reference.cells: is
 edited "E = 1e300" "case.toml:6:21: .*is 1e\+300 .allowed" 's/1e4/1e300/'
 edited "a force of 1e300" "load.displacement_m: is 1e\+300" 's/0\.01/1e300/'
 edited "contradictory loads" "case.toml:14:1: load: the displacement of 'z_min' along x is prescribed by the load in line 8 too" '$s/$/\n/; s/^\[compare\]/[[load]]\non = "z_min"\ndisplacement_m = [1, 0, 0]\n[compare]/'
+jaw='s/^\[compare\]/[[patch]]\nname = "jaw"\nbox_m = [[0, 0, 0.9], [0.5, 0.5, 1.1]]\nfacing = { direction = [0, 0, 1], within_deg = 5 }\n[[load]]\non = "jaw"\nHOW\n[compare]/'
+edited "a force on a part of a held face" "case.toml:18:1: load: the force on 'jaw' acts where the load in line 11 holds 'z_max'" "${jaw/HOW/force_N = [0, 0, 1]}"
+edited "a part of a held face that moves otherwise" "case.toml:18:1: load: 'jaw' has the displacement z = 0.02 m at .*, where 'z_max' of the load in line 11 has 0.01 m" "${jaw/HOW/displacement_m = [0, 0, 0.02]}"
 
 # A drying body.
 drying='s/^displacement_m = \[0, 0, 0.01\]$/displacement_m = [0, 0, 0]/; s/"hybmss"/"msm_18"/; $s/$/\n[fracture]\nshrinkage = 0.1\nthreshold = 0.05\nscatter = 0.1\nsteps = 50/'
