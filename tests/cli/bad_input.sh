@@ -25,6 +25,9 @@ edited() {
 }
 
 edited "unknown key" "case.toml:4:1: .*cell.*did you mean 'cells'" 's/^cells/cell/'
+edited "E of the trade" "case.toml:6:1: material.E: unknown key .*; youngs_modulus_Pa is Young's modulus" 's/^youngs_modulus_Pa/E/'
+edited "a fixed patch" "load.fixed: unknown key .*; displacement_m = .0, 0, 0. in a ..load.. holds a patch" 's/^displacement_m = \[0, 0, 0\]/fixed = true/'
+edited "contact of bodies" "contact: unknown key .*; there is no contact but with a plane: plane of .dynamics." '$s/$/\n[contact]/'
 edited "nu = 0.5" "case.toml:7:.*poisson_ratio.*0\.5" 's/0\.25/0.5/'
 edited "nu = 0.6" "case.toml:7:.*poisson_ratio.*0\.6" 's/0\.25/0.6/'
 edited "E < 0" "case.toml:6:.*youngs_modulus" 's/1e4/-1e4/'
@@ -120,9 +123,26 @@ for name in own.msh own.step own.brep own.stl; do
 done
 [ -e "$work/trace" ] && fail "a command was run"
 
+# Cells of one's own that share an edge and nothing else.
+cat >"$work/hinge.geo" <<'GEO'
+SetFactory("OpenCASCADE");
+Box(1) = {0, 0, 0, 1, 1, 1};
+Box(2) = {1, 1, 0, 1, 1, 1};
+Coherence;
+Transfinite Curve "*" = 3;
+Transfinite Surface "*";
+Recombine Surface "*";
+Transfinite Volume "*";
+Physical Surface("z_min") = {5};
+GEO
+sed -e 's/block.geo/hinge.geo/' -e 's/z_max/z_min/' -e 's/0.01/0/' "$work/good.toml" >"$work/hinge.toml"
+expect "a hinge of cells" "hinge.geo: the mesh has 2 parts that meet in edges or points only, as at \(1, 1, [0-9.]+\)" compare "$work/hinge.toml" --out "$work/out"
+
 moving=$(printf 'kinematics = "hencky"\n%s\n[dynamics]' "$good")
 printf '%s\nduration_s = 0\n' "$moving" >"$work/no_time.toml"
 expect "no duration" "no_time.toml:[0-9]+:14: dynamics.duration_s: is 0 .allowed: a finite number > 0" compare "$work/no_time.toml" --out "$work/out"
+printf '%s\nduration_s = 1\ndamping_ratio = 0.05\n' "$moving" >"$work/ratio.toml"
+expect "a damping ratio" "ratio.toml:[0-9]+:1: dynamics.damping_ratio: unknown key .*; loss_factor with band_Hz is twice the damping ratio" compare "$work/ratio.toml" --out "$work/out"
 printf '%s\nduration_s = 2\ntime_step_s = 1\n' "$moving" >"$work/long_step.toml"
 expect "an unsafe step" "long_step.toml:[0-9]+:15: dynamics.time_step_s: 1 s is not safe .* up to 0.[0-9]+ s" compare "$work/long_step.toml" --out "$work/out"
 

@@ -109,6 +109,19 @@ for form in form_2.msh form_4.msh form.step form.brep; do
 done
 body_with_fem form_step form.step "scale = 1000" 0.3 2.7 0.4
 
+# Another size than was meant is said, with the size: a STEP file states its unit, and scale converts it once more.
+of_size() {  # NAME WORDS
+  "$program" compare "$work/$1.toml" --jobs 1 --quiet --out "$work/out" >"$work/stdout" 2>"$work/stderr"
+  grep -qF "$2" "$work/stderr" || fail "$1: not '$2'" "$work/stderr"
+}
+case_file form.step "scale = 0.001" 3e-7 27e-7 800 "elements = []
+edge_m = 3e-7" >"$work/twice.toml"
+of_size twice "the body spans 3e-06 m: a STEP file states its unit, and scale = 0.001 multiplies that; is scale one too many?"
+grep -qF '"the body is 1e-06 x 1e-06 x 3e-06 m' "$work/out/results.json" || fail "the size of the body is not in the notes"
+case_file trefoil.stl "scale = 1e-4" -9e-5 9e-5 800 "elements = []
+edge_m = 3e-5" >"$work/small.toml"
+of_size small "m; is it so small?"
+
 # Broken files: mended with a note in the report, or refused in one line that names the file.
 while IFS=$'\t' read -r name fate said; do
   case_file "broken/$name.stl" "" -0.5 0.5 200 "elements = []

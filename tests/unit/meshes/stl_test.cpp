@@ -188,6 +188,21 @@ TEST_F(Stl, RefusesOtherFiles) {
       << "four corners";
 }
 
+/// At 1e6 m the coordinates of a ball of 2 m would be multiples of 0.06 m.
+TEST_F(Stl, BinaryFilesWhoseNumbersDoNotResolveTheBodyAreRefused) {
+  const Vec3 site(1e6, 2e5, 0);
+  write_stl_binary(folder_ / "far.stl", moved(sphere(1, 2), 1, site));
+  EXPECT_NE(message_of(folder_ / "far.stl")
+                .find("far.stl: coordinates near 1000001 have steps of 0.062 in a binary STL file, and the body is 2 "
+                      "long (allowed: 0.001 of that"),
+            std::string::npos)
+      << message_of(folder_ / "far.stl");
+  write_stl_binary(folder_ / "long.stl", moved(sphere(1, 2), 1000, site));
+  EXPECT_EQ(message_of(folder_ / "long.stl"), "accepted");
+  write_stl_ascii(folder_ / "digits.stl", moved(sphere(1, 2), 1, site));
+  EXPECT_EQ(message_of(folder_ / "digits.stl"), "accepted");
+}
+
 TEST_F(Stl, AMillionFacetsTakeSeconds) {
   const Surface s = torus(2, 0.5, 1000, 500);
   write_stl_binary(folder_ / "binary.stl", s);

@@ -345,6 +345,13 @@ const Mistake mistakes[] = {
     {"seed_of_a_network_on_vertices", "\"emsm_random\"", "{ model = \"emsm_patch\", seed = 2 }",
      "ball.toml:*emsm_patch: seed: the nodes of this network are the vertices of a mesh"},
     {"unknown_patch", "on = \"high\"", "on = \"hihg\"", "ball.toml:18:1: load.on: *'hihg'"},
+    {"two_displacements_of_a_place", "on = \"high\"\nforce_N = [0, 0, 1]",
+     "on = \"surface\"\ndisplacement_m = [\"free\", \"free\", 1e-3]",
+     "ball.toml:18:1: load: 'surface' has the displacement z = 0.001 m at *where 'low' of the load in line 15 has 0 m"},
+    {"a_force_on_a_held_face", "on = \"high\"\nforce_N = [0, 0, 1]",
+     "on = \"tip\"\nforce_N = [0, 0, 1]\n[[patch]]\nname = \"tip\"\nbeyond = { point_m = [0.1, 0.1, 0.05], normal = "
+     "[0.2, 0, -1] }",
+     "ball.toml:18:1: load: the force on 'tip' acts where the load in line 15 holds 'low'"},
     {"rule_selects_nothing", "[0.1, 0.1, 0.15]", "[0.1, 0.1, 0.35]", "ball.toml:8:*selects no facet"},
     {"rule_with_a_name_that_is_taken", "name = \"high\"", "name = \"surface\"", "ball.toml:8:*surface"},
     {"voxels_too_coarse", "voxels = 100", "voxel_edge_m = 1",
