@@ -185,9 +185,10 @@ void prepare_blocks(PreparedCase& prepared) {
   prepared.reference_cells = reference_cells(e);
   for (const Cells& cells : e.body.cells) check_fineness(e.body, cells);
   for (const Cells& cells : e.body.cells) {
-    Mesh mesh = mesh_geo(prepared.body.geo, e.body.size, cells);
-    select_whole_facets(e.patches, mesh);
-    add_lattice({cells, std::make_shared<Mesh>(std::move(mesh))}, prepared);
+    MeshedBody body = mesh_body({.file = prepared.body.geo, .size = e.body.size, .cells = cells});
+    if (prepared.lattices.empty()) prepared.body.notes = std::move(body.notes);
+    select_whole_facets(e.patches, body.mesh);
+    add_lattice({cells, std::make_shared<Mesh>(std::move(body.mesh))}, prepared);
   }
   check_patches_of_reference(prepared);
 }

@@ -122,6 +122,24 @@ case_file trefoil.stl "scale = 1e-4" -9e-5 9e-5 800 "elements = []
 edge_m = 3e-5" >"$work/small.toml"
 of_size small "m; is it so small?"
 
+# Half of a script's cells are in no physical volume: they are left out, which is said.
+cat >"$work/half.geo" <<'GEO'
+SetFactory("OpenCASCADE");
+Box(1) = {0, 0, 0, 1, 1, 1};
+Box(2) = {0, 0, 1, 1, 1, 1};
+Coherence;
+Transfinite Curve "*" = 3;
+Transfinite Surface "*";
+Recombine Surface "*";
+Transfinite Volume "*";
+Physical Surface("z_min") = {5};
+Physical Volume("lower") = {1};
+GEO
+{ printf '[body]\ngeo = "half.geo"\nsize_m = [1, 1, 1]\ncells = [2, 2, 2]\n'; block_case 0.3 | sed '1,4d; s/z_max/z_min/; s/0\.01/0/'; } >"$work/half.toml"
+printf '[compare]\nmodels = ["hybmss"]\n[reference]\nelements = []\n' >>"$work/half.toml"
+"$program" compare "$work/half.toml" --jobs 1 --quiet --out "$work/out" >"$work/stdout" 2>"$work/stderr"
+grep -qF "8 of the file's 16 cells are in no physical volume" "$work/out/results.json" || fail "cells that are left out unsaid" "$work/stderr"
+
 # Broken files: mended with a note in the report, or refused in one line that names the file.
 while IFS=$'\t' read -r name fate said; do
   case_file "broken/$name.stl" "" -0.5 0.5 200 "elements = []
