@@ -70,7 +70,9 @@ TrustedOrders trusted_orders(const std::string& measure, const std::string& elem
   const double degree = element.back() - '0';
   const std::string kind = kind_of(measure);
   if (kind == "displacement" || kind == "mean_displacement")
-    return {.highest = smooth ? degree + 1 : clamped_order, .lowest = 1, .first = degree + 1};
+    return {.highest = smooth ? degree + 1 : clamped_order,
+            .lowest = degree > 1 ? 1 : TrustedOrders{}.lowest,
+            .first = degree + 1};
   if (smooth && kind == "stress") return {.highest = degree};
   return {};
 }

@@ -40,13 +40,14 @@ inline constexpr double clamped_order = 2;
 /// Which orders a sequence is believed to converge with.
 struct TrustedOrders {
   double highest = clamped_order;  ///< of the step to the limit
-  double lowest = 0.5;             ///< a slower sequence is not extrapolated, nor is this slow
-  double first = highest;          ///< with which the first difference may fall
+  double lowest = 0.5;  ///< a slower sequence is not extrapolated; what remains of it is taken to fall with this order
+  double first = highest;  ///< with which the first difference may fall
 };
 
 /// Those of a scalar measure with an element ("q1", "q2", "p1", "p2").  In a smooth solution displacements converge
-/// with degree + 1 and stresses with degree; all else as with clamped edges.  There a displacement's error is the
-/// energy of the field's, of first order at least, and its first difference falls with up to degree + 1.
+/// with degree + 1 and stresses with degree; all else as with clamped edges.  The error of a displacement is an energy
+/// of the field's error, of first order at least with elements of degree 2 (those of degree 1 may lock and be slower),
+/// and its first difference falls with up to degree + 1.
 TrustedOrders trusted_orders(const std::string& measure, const std::string& element, bool smooth);
 
 /// Cell sizes of the first grid over the second's, and of the second over the third's.

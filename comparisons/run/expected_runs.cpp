@@ -21,6 +21,7 @@ constexpr double large_strain = 20, near_incompressible = 0.025;  // factors; th
 constexpr double spring_step = 2e-8;                              // of a motion, per unknown and step
 constexpr double breaking = 1e-4;                                 // of a sample that dries: hundreds of equilibria
 constexpr double homogenisation = 0.1;                            // of a random network, whatever its size
+constexpr double refining = 4;                                    // [s] to an accuracy, once for all parts
 constexpr int reference_grids = 3;
 
 // Bodies of voxels before they are meshed.
@@ -196,7 +197,9 @@ double unmeshed_seconds(const Experiment& e, const IsotropicMaterial& material) 
     unmeshed.experiment = e;
     add_grids_in_time(unmeshed, material, runs);
   }
-  return sum_of(runs.all) + sum_of(expected_variations(e));
+  const double refined =
+      refining * static_cast<double>(e.body.accuracies.size()) / static_cast<double>(e.materials.size());
+  return sum_of(runs.all) + sum_of(expected_variations(e)) + refined;
 }
 
 }  // namespace springproof

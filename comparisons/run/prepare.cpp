@@ -83,6 +83,7 @@ void choose_cut_cells(PreparedCase& prepared) {
 /// @throws InputError for a model that is to and cannot.
 void choose_measured_cells(PreparedCase& prepared) {
   const Experiment& e = prepared.experiment;
+  std::string reasons;
   for (std::size_t m = 0; m < prepared.models.size(); ++m) {
     ModelParameters& p = prepared.models[m];
     const char* reason = !*p.cut                      ? "its cells are not cut"
@@ -96,11 +97,14 @@ void choose_measured_cells(PreparedCase& prepared) {
           e.models[m].where,
           fmt::format("compare.models: {}: coarsened = true: {} (allowed: cut cells of one size)", p.row.name, reason));
     p.coarsened = p.coarsened.value_or(e.body.coarsened && !reason);
+    if (reason) reasons += fmt::format("{}{}: {}", reasons.empty() ? "" : "; ", p.row.name, reason);
   }
   const auto is_measured = [](const ModelParameters& p) { return *p.coarsened; };
   if (e.body.coarsened && std::none_of(prepared.models.begin(), prepared.models.end(), is_measured))
     throw InputError(e.body.where,
-                     "body.coarsened: no model of the case has cells that can be measured (allowed: one of cut cells)");
+                     fmt::format("body.coarsened: no model of the case has cells that can be measured ({}; "
+                                 "allowed: one of cut cells)",
+                                 reasons.empty() ? "there is none" : reasons));
 }
 
 /// @throws InputError at options of nodes at random, for a network whose nodes are the vertices of a mesh.

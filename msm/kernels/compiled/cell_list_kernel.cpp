@@ -169,7 +169,7 @@ SPRINGPROOF_INLINE void measured_stress(const Real* form, const Cells<Real>& cel
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
       E[i][j] = D[i][j] + D[j][i] + (D[0][i] * D[0][j] + D[1][i] * D[1][j] + D[2][i] * D[2][j]);
-  stdx::where(dilatation <= Real(-1), E[0][0]) = Real(__builtin_nan(""));
+  stdx::where(dilatation + Real(1) < Real(1e-30), E[0][0]) = Real(__builtin_nan(""));
   find_eigenvectors<Real>(E, Q);
   for (int k = 0; k < 3; ++k) half_log[k] = Real(0.5) * logarithm_of_1_and<Real>(E[k][k]);
   for (int e = 0; e < 6; ++e) {

@@ -85,6 +85,12 @@ TEST(ReferenceValue, TheFirstDifferenceOfDisplacementsFallsWithTheElementsOrder)
   EXPECT_NEAR(of(5).value, 1 + 0.1 / std::pow(4, 5) + last(5) * -1 / 3, 1e-12) << "the limit is still of second order";
 }
 
+TEST(ReferenceValue, ElementsThatMayLockCanBeSlowerThanFirstOrder) {
+  for (const char* element : {"p1", "q1"})
+    EXPECT_EQ(trusted_orders("displacement.tip.x", element, false).lowest, TrustedOrders{}.lowest);
+  for (const char* element : {"p2", "q2"}) EXPECT_EQ(trusted_orders("displacement.tip.x", element, false).lowest, 1);
+}
+
 TEST(ReferenceValue, DisplacementsAreOfFirstOrderAtLeast) {
   // A scanned bunny: three meshes differ by 0.5 and 0.5 %, the finest is 0.3 % off.
   const auto of = [](const std::string& measure, double order) {

@@ -10,7 +10,8 @@ namespace {
 struct MpiStart : testing::Test {
   MpiStart() { TearDown(); }
   void TearDown() override {
-    for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "OMPI_MCA_ess_singleton_isolated", "OMPI_MCA_pml"})
+    for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "OMPI_MCA_ess_singleton_isolated",
+                             "OMPI_MCA_orte_create_session_dirs", "OMPI_MCA_pml"})
       unsetenv(name);
   }
   static std::string value(const char* name) {
@@ -19,8 +20,9 @@ struct MpiStart : testing::Test {
   }
 };
 
-TEST_F(MpiStart, AloneStartsNoDaemonAndLooksForNoNetwork) {
+TEST_F(MpiStart, AloneStartsNoDaemonAndLooksForNoNetworkNorForAFolderThatOthersRemove) {
   start_mpi_without_network();
+  EXPECT_EQ(value("OMPI_MCA_orte_create_session_dirs"), "0");
   EXPECT_EQ(value("OMPI_MCA_ess_singleton_isolated"), "1");
   EXPECT_EQ(value("OMPI_MCA_pml"), "ob1");
 }
