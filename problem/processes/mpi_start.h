@@ -6,8 +6,8 @@
 namespace springproof {
 
 /// Without mpirun: keeps Open MPI from starting a daemon, from looking for networks, for which it waits .3 s at each
-/// start, and from a folder in /tmp that all such programs share and the first to end removes, so that another could not
-/// start.  What the user has set stays.
+/// start, and from a folder in /tmp that all such programs share and the first to end removes, so that another could
+/// not start.  What the user has set stays.
 inline void start_mpi_without_network() {
   for (const char* several : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"})
     if (std::getenv(several)) return;
