@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "comparisons/judge/reference_value.h"
@@ -16,31 +17,33 @@ namespace {
 
 using Maybe = std::optional<double>;
 
+/// Where a computation was made.
+struct Where {
+  std::string model;
+  Cells cells;
+};
+
 /// The rows of one load case with one of the inputs changed, or none.
 class Rows {
  public:
-  Rows(const CaseResult& result, std::size_t load_case, const std::string& input) {
+  Rows(const CaseResult& result, std::size_t load_case, const std::string& input) : changed_(!input.empty()) {
     const std::string& name = result.experiment.load_cases[load_case].name;
     if (load_case == 0 && input.empty()) rows_ = &result.rows;
     for (const VariedRun& run : result.varied)
       if (run.load_case == name && run.input == input) rows_ = &run.rows;
   }
 
-  Maybe value(const std::string& model, const Cells& cells, const std::string& measure) const {
+  /// With an input changed there are rows of the first model on one lattice, whose label and cells may be others.
+  Maybe value(const Where& at, const std::string& measure) const {
     if (rows_)
       for (const Row& row : *rows_)
-        if (row.model == model && row.cells == cells && row.measure == measure) return row.value;
+        if (row.measure == measure && (changed_ || (row.model == at.model && row.cells == at.cells))) return row.value;
     return {};
   }
 
  private:
+  const bool changed_;
   const std::vector<Row>* rows_ = nullptr;
-};
-
-/// Where a computation was made.
-struct Where {
-  std::string model;
-  Cells cells;
 };
 
 /// What the end of an arm moves by beyond the middle of the patch that it turns with, along the axis of the quantity.
@@ -48,7 +51,7 @@ Maybe of_arm(const MeasuredValue& m, const Rows& rows, const Where& at) {
   const std::string turn = "turn." + patch_of_row(m.quantity);
   Vec3 vector;
   for (int d = 0; d < 3; ++d) {
-    const Maybe component = rows.value(at.model, at.cells, turn + '.' + "xyz"[d]);
+    const Maybe component = rows.value(at, turn + '.' + "xyz"[d]);
     if (!component) return {};
     vector[d] = *component * std::numbers::pi / 180;
   }
@@ -60,7 +63,7 @@ Maybe of_arm(const MeasuredValue& m, const Rows& rows, const Where& at) {
 Maybe in_load_case(const CaseResult& r, const MeasuredValue& m, std::size_t load_case, const std::string& input,
                    const Where& at) {
   const Rows rows(r, load_case, input);
-  const Maybe value = rows.value(at.model, at.cells, m.quantity);
+  const Maybe value = rows.value(at, m.quantity);
   if (!value || m.arm.isZero(0)) return value;
   const Maybe arm = of_arm(m, rows, at);
   return arm ? Maybe(*value + *arm) : Maybe();
@@ -74,6 +77,8 @@ Maybe simulated(const CaseResult& r, const MeasuredValue& m, const std::string& 
   return other ? Maybe(*value - *other) : Maybe();
 }
 
+bool has_fewer_cells(const Cells& a, const Cells& b) { return cell_count(a) < cell_count(b); }
+
 /// Values on the lattices that have one, coarse to fine.
 struct Sequence {
   std::vector<Cells> cells;
@@ -82,7 +87,7 @@ struct Sequence {
 
 Sequence sequence_of(const CaseResult& r, const MeasuredValue& m, const std::string& model) {
   std::vector<Cells> all = r.cells;
-  std::sort(all.begin(), all.end(), [](const Cells& a, const Cells& b) { return cell_count(a) < cell_count(b); });
+  std::sort(all.begin(), all.end(), has_fewer_cells);
   Sequence out;
   for (const Cells& cells : all)
     if (const Maybe value = simulated(r, m, "", {model, cells})) {
@@ -92,58 +97,93 @@ Sequence sequence_of(const CaseResult& r, const MeasuredValue& m, const std::str
   return out;
 }
 
-double ratio(const Cells& coarse, const Cells& fine) { return std::cbrt(cell_count(fine) / cell_count(coarse)); }
+/// The limit of the last two lattices that have a value, or three; empty: of one, or of two that hardly differ.
+std::optional<ReferenceValue> limit_of(const Sequence& s) {
+  const std::size_t n = s.values.size();
+  const auto ratio = [&](std::size_t fine) { return size_ratio(s.cells[fine - 1], s.cells[fine], s.cells.back()); };
+  if (n < 2) return {};
+  if (n > 2) return extrapolate(s.values, solver_noise * std::abs(s.values.back()), {}, {ratio(n - 2), ratio(n - 1)});
+  if (ratio(1) < smallest_ratio) return {};
+  const double step = (s.values[1] - s.values[0]) / (ratio(1) - 1);  // at first order
+  return ReferenceValue{s.values[1] + step, coarse_safety_factor * std::abs(step), {}, ""};
+}
 
 /// Sets S and u_num: half of the uncertainty of a limit, which is about two standard ones.
 void set_limit(const Sequence& s, ValidatedValue& v) {
-  const std::size_t n = s.values.size();
-  if (n == 0) return;
+  if (s.values.empty()) return;
   v.simulated = s.values.back();
-  if (n == 1) return;
-  const ReferenceValue limit =
-      n == 2 ? extrapolate_two(s.values[0], s.values[1])
-             : extrapolate(s.values, solver_noise * std::abs(s.values.back()), {},
-                           {ratio(s.cells[n - 3], s.cells[n - 2]), ratio(s.cells[n - 2], s.cells[n - 1])});
-  v.simulated = limit.value;
-  v.u_numerical = limit.uncertainty / 2;
-  v.resolution = s.values.back() - limit.value;
+  const std::optional<ReferenceValue> limit = limit_of(s);
+  if (!limit) return;
+  v.simulated = limit->value;
+  v.u_numerical = limit->uncertainty / 2;
+  v.resolution = s.values.back() - limit->value;
 }
 
-/// Relative change of a simulated value by an input, on the coarsest lattice; 0 where the load case does not have it.
-double change_by(const CaseResult& r, const MeasuredValue& m, const std::string& input) {
-  const Where at{r.experiment.models.front().label,
-                 r.experiment.body.is_voxels() ? r.cells.front() : r.experiment.body.cells.front()};
+/// Change of a simulated value by an input, on the lattice of fewest cells; empty: one of the two runs has no value.
+Maybe change_by(const CaseResult& r, const MeasuredValue& m, const std::string& input) {
+  const Where at{r.experiment.models.front().label, *std::min_element(r.cells.begin(), r.cells.end(), has_fewer_cells)};
   const Maybe before = simulated(r, m, "", at), after = simulated(r, m, input, at);
-  return before && after && *before != 0 ? *after / *before - 1 : 0;
+  return before && after && std::isfinite(*after - *before) ? Maybe(*after - *before) : Maybe();
 }
 
-const MeasuredValue* fitted_value(const Experiment& e) {
-  const auto found = std::find_if(e.measured.begin(), e.measured.end(), [](const auto& m) { return m.fitted; });
-  return found == e.measured.end() ? nullptr : &*found;
+/// The value f that an input was fitted to.
+struct Fit {
+  const MeasuredValue* value = nullptr;  ///< none: nothing was fitted
+  std::string input = {};
+  Maybe change = {};  ///< of f by the input
+};
+
+Fit fit_of(const CaseResult& r) {
+  Fit fit;
+  for (const MeasuredValue& m : r.experiment.measured)
+    if (m.fitted) fit.value = &m;
+  for (const UncertainInput& input : r.experiment.inputs)
+    if (input.kind == UncertainInput::Kind::fitted) fit.input = input.name;
+  if (fit.value) fit.change = change_by(r, *fit.value, fit.input);
+  return fit;
 }
 
-/// The shares of the inputs in a value.  A fit to another value f answers to a change of an input there: what is left
-/// here is J - (dS/dp) / (dS_f/dp) J_f; of f itself nothing.
-void set_inputs(const CaseResult& r, const MeasuredValue& m, ValidatedValue& v) {
-  const Experiment& e = r.experiment;
-  const MeasuredValue* fit = fitted_value(e);
-  double answer = 0;  // relative change here per relative change of f
-  for (const UncertainInput& input : e.inputs)
-    if (input.kind == UncertainInput::Kind::fitted)
-      answer = change_by(r, m, input.name) / change_by(r, *fit, input.name);
-  const double S = v.simulated.value_or(0);
-  double squares = 0;
-  const auto add = [&](const std::string& name, double change, bool alternative) {
-    v.inputs.push_back({name, change * S, alternative});
-    if (!alternative) squares += std::pow(change * S, 2);
-  };
-  for (const UncertainInput& input : e.inputs) {
-    if (input.kind == UncertainInput::Kind::fitted || m.fitted) continue;
-    const double there = fit ? change_by(r, *fit, input.name) : 0;
-    add(input.name, change_by(r, m, input.name) - answer * there, input.kind == UncertainInput::Kind::alternative);
+/// Why no value can be judged beside this fit; empty: they can.
+std::string fault_of(const Fit& fit, const ValidatedValue& f) {
+  if (!f.simulated) return fmt::format("'{}', to which '{}' was fitted, has no simulated value", f.name, fit.input);
+  const double u = std::hypot(f.u_numerical.value_or(0), f.u_measured);
+  if (!(std::abs(*f.error) <= no_model_error * u))
+    return fmt::format("'{}' is not fitted to '{}', from which the simulated value is {:.1f} u_num and u_D away",
+                       fit.input, f.name, std::abs(*f.error) / u);
+  if (!fit.change) return fmt::format("'{}' has no value with '{}' changed", f.name, fit.input);
+  if (std::abs(*fit.change) <= solver_noise * std::abs(*f.simulated))
+    return fmt::format("'{}' does not change with '{}', which was fitted to it", f.name, fit.input);
+  return "";
+}
+
+/// The shares of the inputs in a value, and u_input.  A fit to another value f answers to a change of an input there:
+/// what is left here is dS/dp - (dS/dp_f) / (dS_f/dp_f) dS_f/dp, where p_f is what was fitted.
+void set_inputs(const CaseResult& r, const MeasuredValue& m, const Fit& fit, ValidatedValue& v) {
+  const Maybe change_by_fit = fit.value ? change_by(r, m, fit.input) : 0;
+  if (!change_by_fit) {
+    v.not_judged = fmt::format("no value with '{}' changed", fit.input);
+    return;
   }
-  if (fit && !m.fitted) add("fit to " + fit->name, answer * fit->u / std::abs(fit->value), false);
-  v.u_input = std::sqrt(squares);
+  const double answer = fit.value ? *change_by_fit / *fit.change : 0;  // change here per change of f
+  std::vector<std::string> missing;
+  double squares = 0;
+  const auto add = [&](const std::string& name, const Maybe& change, bool alternative) {
+    v.inputs.push_back({name, change, alternative});
+    if (alternative) return;
+    if (!change) missing.push_back(name);
+    squares += std::pow(change.value_or(0), 2);
+  };
+  for (const UncertainInput& input : r.experiment.inputs) {
+    if (input.kind == UncertainInput::Kind::fitted) continue;
+    const Maybe here = change_by(r, m, input.name), there = fit.value ? change_by(r, *fit.value, input.name) : 0;
+    add(input.name, here && there ? Maybe(*here - answer * *there) : Maybe(),
+        input.kind == UncertainInput::Kind::alternative);
+  }
+  if (fit.value) add("fit to " + fit.value->name, answer * fit.value->u, false);
+  if (missing.empty())
+    v.u_input = std::sqrt(squares);
+  else
+    v.not_judged = fmt::format("no value with '{}' changed", fmt::join(missing, "', '"));
 }
 
 /// On the finest cells where both are known.
@@ -155,7 +195,7 @@ Maybe share_of_springs(const CaseResult& r, const MeasuredValue& m, const Sequen
   return {};
 }
 
-ValidatedValue validated(const CaseResult& r, const MeasuredValue& m) {
+ValidatedValue simulated_beside(const CaseResult& r, const MeasuredValue& m) {
   const Experiment& e = r.experiment;
   ValidatedValue v =
       of_run<ValidatedValue>({e.models.front().label, e.materials.front().poisson_ratio, r.cells.front()});
@@ -170,23 +210,35 @@ ValidatedValue validated(const CaseResult& r, const MeasuredValue& m) {
   v.licence = m.licence;
   const Sequence model = sequence_of(r, m, v.model);
   set_limit(model, v);
-  set_inputs(r, m, v);
   v.springs = share_of_springs(r, m, model);
-  if (!v.simulated) return v;
-  v.error = *v.simulated - v.measured;
-  if (!v.u_numerical || v.fitted) return v;
-  v.u_val = std::hypot(*v.u_numerical, v.u_input, v.u_measured);
-  v.ratio = std::abs(*v.error) / *v.u_val;
+  if (v.simulated) v.error = *v.simulated - v.measured;
   return v;
+}
+
+/// Sets u_val and the ratio, or why there is none.
+void judge(const std::string& fault_of_fit, ValidatedValue& v) {
+  if (!v.simulated)
+    v.not_judged = "no simulated value";
+  else if (!v.u_numerical)
+    v.not_judged = "u_num is unknown, for want of two lattices that differ";
+  else if (!fault_of_fit.empty())
+    v.not_judged = fault_of_fit;
+  if (!v.not_judged.empty()) return;
+  v.u_val = std::hypot(*v.u_numerical, *v.u_input, v.u_measured);
+  const double ratio = std::abs(*v.error) / *v.u_val;
+  if (std::isfinite(ratio) && std::isfinite(*v.u_val))
+    v.ratio = ratio;
+  else
+    v.not_judged = "E or u_val is not finite";
 }
 
 /// A difference, in % of D: above 0 the simulated value is the larger one.
 std::string signed_percent(const ValidatedValue& v, const Maybe& x) {
-  return x ? fmt::format("{:+.1f}", 100 * *x / v.measured) : "–";
+  return x && v.measured != 0 ? fmt::format("{:+.1f}", 100 * *x / v.measured) : "–";
 }
 
 std::string percent(const ValidatedValue& v, const Maybe& u) {
-  return u ? fmt::format("{:.1f}", 100 * *u / std::abs(v.measured)) : "–";
+  return u && v.measured != 0 ? fmt::format("{:.1f}", 100 * *u / std::abs(v.measured)) : "–";
 }
 
 std::vector<const ValidatedValue*> outside(const CaseResult& r) {
@@ -196,14 +248,37 @@ std::vector<const ValidatedValue*> outside(const CaseResult& r) {
   return all;
 }
 
-std::string sentences(const CaseResult& r) {
-  const auto judged =
+/// "2 not judged: sag, turn (no simulated value)", by what keeps them from it.
+std::string not_judged(const CaseResult& r) {
+  std::map<std::string, std::vector<std::string>> names;
+  std::size_t count = 0;
+  for (const ValidatedValue& v : r.validation)
+    if (!v.not_judged.empty()) names[v.not_judged].push_back(v.name), ++count;
+  std::vector<std::string> groups;
+  for (const auto& [why, of] : names) groups.push_back(fmt::format("{} ({})", fmt::join(of, ", "), why));
+  return groups.empty() ? "" : fmt::format("{} not judged: {}.", count, fmt::join(groups, "; "));
+}
+
+/// The runs behind the values that have no result, and why.
+std::string failed_runs(const CaseResult& r) {
+  std::vector<std::string> runs;
+  for (const VariedRun& run : r.varied)
+    if (!run.message.empty())
+      runs.push_back(run.input.empty()
+                         ? fmt::format("'{}' ({})", run.load_case, run.message)
+                         : fmt::format("'{}' with '{}' changed ({})", run.load_case, run.input, run.message));
+  return runs.empty() ? "" : fmt::format("Without a result: {}.", fmt::join(runs, "; "));
+}
+
+std::string judged(const CaseResult& r) {
+  const auto count =
       std::count_if(r.validation.begin(), r.validation.end(), [](const auto& v) { return v.ratio.has_value(); });
+  if (count == 0) return "";
   const std::vector<const ValidatedValue*> off = outside(r);
   std::string out = fmt::format(
       "{} of {} predicted values lie within {:g} u_val of the measured ones, which shows no error "
       "of the model there.",
-      judged - static_cast<long>(off.size()), judged, no_model_error);
+      count - static_cast<long>(off.size()), count, no_model_error);
   std::vector<std::string> lines;
   for (const ValidatedValue* v : off)
     lines.push_back(fmt::format("{} ({} % = {:.1f} u_val; springs {} %, cells {} %, inputs {} %, data {} %)", v->name,
@@ -215,20 +290,41 @@ std::string sentences(const CaseResult& r) {
         " Outside: {}. What springs, cells, inputs and data do not explain is the material's law, the "
         "supports and loads as they are modelled, or an uncertainty that was judged too small.",
         fmt::join(lines, "; "));
-  for (const std::string& text : r.experiment.left_out) out += fmt::format(" Not compared: {}.", text);
   return out;
+}
+
+std::string sentences(const CaseResult& r) {
+  std::vector<std::string> all = {judged(r), not_judged(r), failed_runs(r)};
+  for (const std::string& text : r.experiment.left_out) all.push_back(fmt::format("Not compared: {}.", text));
+  std::erase(all, "");
+  return fmt::format("{}", fmt::join(all, " "));
+}
+
+/// The values in the order of the case, judged.
+std::vector<ValidatedValue> validated(const CaseResult& r) {
+  const std::vector<MeasuredValue>& measured = r.experiment.measured;
+  std::vector<ValidatedValue> all;
+  for (const MeasuredValue& m : measured) all.push_back(simulated_beside(r, m));
+  const Fit fit = fit_of(r);
+  const std::string fault = fit.value ? fault_of(fit, all[static_cast<std::size_t>(fit.value - measured.data())]) : "";
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (measured[i].fitted) continue;
+    if (fault.empty()) set_inputs(r, measured[i], fit, all[i]);
+    judge(fault, all[i]);
+  }
+  return all;
 }
 
 }  // namespace
 
 void validate(CaseResult& r) {
-  for (const MeasuredValue& m : r.experiment.measured) {
-    const ValidatedValue& v = r.validation.emplace_back(validated(r, m));
+  r.validation = validated(r);
+  for (const ValidatedValue& v : r.validation) {
     if (!v.ratio) continue;
     Row row = of_run<Row>(v);
     row.case_name = r.experiment.name;
     row.kinematics = r.experiment.kinematics == "linear" ? "linear" : "finite";
-    row.measure = "measured." + m.name;
+    row.measure = "measured." + v.name;
     row.unit = unit_of(row.measure);
     row.value = *v.ratio;
     r.rows.push_back(row);

@@ -274,14 +274,8 @@ DisplacementScale scale_of_errors(const PreparedCase& prepared, const Lattice& l
 }
 
 GridRatios ratios_of(const ElementGrids& e) {
-  const Cells& finest = e.grids[2].grid.cells;
-  const auto refined =
-      is_tetrahedra(finest) ? 3 : std::count_if(finest.begin(), finest.end(), [](int n) { return n > 1; });
-  const auto ratio = [&](int coarse, int fine) {
-    return std::pow(cell_count(e.grids[fine].grid.cells) / cell_count(e.grids[coarse].grid.cells),
-                    1.0 / static_cast<double>(std::max(refined, 1L)));
-  };
-  return {ratio(0, 1), ratio(1, 2)};
+  const auto cells = [&](int grid) -> const Cells& { return e.grids[grid].grid.cells; };
+  return {size_ratio(cells(0), cells(1), cells(2)), size_ratio(cells(1), cells(2), cells(2))};
 }
 
 void widen(double spread, ReferenceField& field) {

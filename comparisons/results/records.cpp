@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "comparisons/results/records_json.h"
 #include "problem/case_file/measures.h"
@@ -101,6 +102,12 @@ std::string cells_text(const Cells& cells, std::string_view times) {
 
 double cell_count(const Cells& cells) {
   return is_tetrahedra(cells) ? cells[0] : double(cells[0]) * cells[1] * cells[2];
+}
+
+double size_ratio(const Cells& coarse, const Cells& fine, const Cells& finest) {
+  const auto refined =
+      is_tetrahedra(finest) ? 3 : std::count_if(finest.begin(), finest.end(), [](int n) { return n > 1; });
+  return std::pow(cell_count(fine) / cell_count(coarse), 1.0 / static_cast<double>(std::max(refined, 1L)));
 }
 
 Json to_json(const CaseResult& result) {

@@ -227,8 +227,8 @@ struct VariedRun {
 /// What an input, or an alternative to one, does to a value.
 struct InputShare {
   std::string input;
-  double change = 0;         ///< by its uncertainty, in the unit of the value
-  bool alternative = false;  ///< no uncertainty, but another choice
+  std::optional<double> change;  ///< by its uncertainty, in the unit of the value; empty: unknown
+  bool alternative = false;      ///< no uncertainty, but another choice
 };
 
 /// A simulated value S beside a measured one D, by ASME V&V 20: E = S - D beside u_val, all in one unit; uncertainties
@@ -240,10 +240,11 @@ struct ValidatedValue : RunKey {
   double measured = 0, u_measured = 0;
   std::optional<double> simulated;  ///< the limit of the model's lattices
   std::optional<double> u_numerical;
-  double u_input = 0;
+  std::optional<double> u_input;
   std::optional<double> error;  ///< E
   std::optional<double> u_val;
-  std::optional<double> ratio;       ///< |E| / u_val; empty: fitted, or unknown
+  std::optional<double> ratio;       ///< |E| / u_val; empty: fitted, or not judged
+  std::string not_judged;            ///< why not
   std::optional<double> springs;     ///< model - finite elements on the same cells, the finest that both have
   std::optional<double> resolution;  ///< finest lattice - limit
   std::vector<InputShare> inputs;
@@ -289,6 +290,10 @@ std::string cells_text(const Cells& cells, std::string_view times = "x");
 
 /// Number of hexahedra or tetrahedra; of a body of voxels that of its bounding box.
 double cell_count(const Cells& cells);
+
+/// Cell sizes of one grid over those of a finer one, in a sequence whose finest is divided along the axes on which it
+/// has more than one cell.
+double size_ratio(const Cells& coarse, const Cells& fine, const Cells& finest);
 
 /// What to know before the errors of a case are read, one clause each: a body that its supports carry along; at large
 /// strain loads, and models that follow another law than the reference.

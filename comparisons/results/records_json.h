@@ -35,8 +35,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PublishedRow, model, poisson_ratio, cells, me
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(VariedRun, load_case, input, rows, message)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(InputShare, input, change, alternative)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ValidatedValue, model, poisson_ratio, cells, name, quantity, unit, load_case, fitted,
-                                   measured, u_measured, simulated, u_numerical, u_input, error, u_val, ratio, springs,
-                                   resolution, inputs, source, licence)
+                                   measured, u_measured, simulated, u_numerical, u_input, error, u_val, ratio,
+                                   not_judged, springs, resolution, inputs, source, licence)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Part, runs, rows, references, pictures, lines, histories, splits, deformations,
                                    cracks, limits, varied)
 

@@ -1,11 +1,16 @@
 #include "comparisons/run/variations.h"
 
+#include <algorithm>
+#include <functional>
+
+#include "comparisons/results/records.h"
+
 namespace springproof {
 namespace {
 
-template <class T>
-void keep_first(std::vector<T>& all) {
-  if (all.size() > 1) all.resize(1);
+template <class T, class Before>
+void keep_first(std::vector<T>& all, Before before) {
+  if (!all.empty()) all = {*std::min_element(all.begin(), all.end(), before)};
 }
 
 }  // namespace
@@ -21,13 +26,13 @@ std::vector<Variation> variations(const Experiment& e) {
 
 Experiment case_of(const Experiment& e, const Variation& variation) {
   Experiment changed = varied(e, variation);
-  keep_first(changed.models);
+  if (changed.models.size() > 1) changed.models.resize(1);
   if (!variation.input) return changed;
   changed.elements.clear();
   changed.reference.elements.clear();
-  for (auto* numbers : {&changed.body.voxel_edges, &changed.body.accuracies}) keep_first(*numbers);
-  keep_first(changed.body.voxel_counts);
-  keep_first(changed.body.cells);
+  keep_first(changed.body.cells, [](const Cells& a, const Cells& b) { return cell_count(a) < cell_count(b); });
+  keep_first(changed.body.voxel_counts, std::less<>());
+  for (auto* numbers : {&changed.body.voxel_edges, &changed.body.accuracies}) keep_first(*numbers, std::greater<>());
   return changed;
 }
 

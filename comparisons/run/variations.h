@@ -10,8 +10,8 @@ namespace springproof {
 /// All but the case as it is written; none of a case without measured values.
 std::vector<Variation> variations(const Experiment& experiment);
 
-/// The case of a variation, without what is not measured: its first model, with an input changed on the coarsest
-/// lattice alone and without finite elements.
+/// The case of a variation, without what is not measured: its first model, with an input changed on the lattice
+/// of fewest cells alone and without finite elements.
 Experiment case_of(const Experiment& experiment, const Variation& variation);
 
 }  // namespace springproof

@@ -10,13 +10,19 @@
 #include "comparisons/run/prepare.h"
 #include "comparisons/run/variations.h"
 #include "problem/processes/child.h"
+#include "problem/system/input_error.h"
 
 namespace springproof {
 namespace {
 
 VariedRun run_of(const Experiment& e, const Variation& variation, const Experiment& changed) {
   VariedRun out{e.load_cases[variation.load_case].name, variation.input ? e.inputs[*variation.input].name : "", {}, ""};
-  const Part part = run_part(prepare(changed), 0, {});
+  Part part;
+  try {
+    part = run_part(prepare(changed), 0, {});
+  } catch (const InputError& refused) {
+    out.message = fmt::format("the case is refused: {}", refused.what());
+  }
   for (const Row& row : part.rows)
     if (row.measure.starts_with("turn.") ||
         std::any_of(e.measured.begin(), e.measured.end(), [&](const auto& m) { return m.quantity == row.measure; }))

@@ -10,7 +10,7 @@ namespace springproof {
 
 /// Of the first model, and of the finite elements of the case where only the load case is another; with an input
 /// changed on the coarsest lattice alone.  Only the rows that are measured, and turns.
-/// Each is kept.
+/// Each is kept.  A change with which the case cannot be run is a run without rows, whose message says why.
 /// @return none for a case without measured values
 std::vector<VariedRun> varied_runs(const Experiment& experiment, const RunKeeper& keeper);
 

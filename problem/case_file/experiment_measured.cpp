@@ -78,6 +78,9 @@ MeasuredValue read_value(const TomlValue& value, const Experiment& e) {
   if (is_distance(m.quantity) || is_deviation(m.quantity))
     refuse(table.at("quantity"), fmt::format("'{}' is a difference between computations", m.quantity),
            "a quantity that can be measured");
+  if (m.quantity.starts_with("stress.") || m.quantity.starts_with("motion."))
+    refuse(table.at("quantity"), fmt::format("'{}' is not known of the equilibria of models", m.quantity),
+           "a quantity that the first model has");
   if (const auto arm = table.find("arm_m")) {
     m.arm = as_vector(*arm);
     if (!m.quantity.starts_with("mean_displacement.") || m.quantity.ends_with(".magnitude"))
@@ -87,6 +90,7 @@ MeasuredValue read_value(const TomlValue& value, const Experiment& e) {
   if (const auto minus = table.find("minus")) m.minus = read_load_case(*minus, e);
   if (m.minus == m.of) refuse(table.at("minus"), "is the same load case", "another one");
   if (const auto use = table.find("use")) m.fitted = as_choice(*use, {"fit", "predict"}) == "fit";
+  if (m.fitted && m.value == 0) refuse(table.at("value"), "is 0, to which nothing can be fitted", "another value");
   return m;
 }
 
@@ -133,8 +137,10 @@ void read_measured(const TomlTable& document, Experiment& e) {
   add_measure("measured", e);
   if (std::any_of(e.measured.begin(), e.measured.end(), [](const auto& m) { return !m.arm.isZero(0); }))
     add_measure("turn", e);
-  for (std::size_t i = 1; i < e.load_cases.size(); ++i) varied(e, {i, {}});
-  for (std::size_t i = 0; i < e.inputs.size(); ++i) varied(e, {0, i});
+  for (std::size_t c = 0; c < e.load_cases.size(); ++c) {
+    if (c > 0) varied(e, {c, {}});
+    for (std::size_t i = 0; i < e.inputs.size(); ++i) varied(e, {c, i});
+  }
 }
 
 }  // namespace springproof

@@ -298,7 +298,7 @@ constexpr KeyTable tables[] = {
   {"measured",                   "[[measured]]",                     "Values of the body itself, with standard uncertainties; the first model is judged by them (`measured.NAME` = \\|E\\|/u_val).", measured_keys},
   {"measured.values",            "",                                 "",                                                            measured_value_keys},
   {"load_case",                  "[[load_case]]",                    "",                                                            load_case_keys},
-  {"input",                      "[[input]]",                        "The first model runs once with each, on its coarsest lattice.", input_keys},
+  {"input",                      "[[input]]",                        "The first model runs once with each in every load case, on its coarsest lattice.", input_keys},
   {"external",                   "[[external]]",                     "Displacements by any program ([engines](engines.md#any-program-beside-the-models)).", external_keys},
   {"external.files",             "",                                 "",                                                            external_file_keys},
   {"dynamics",                   "[dynamics]",                       "Under any kinematics but \"linear\" ([motion](motion.md)). Each model is computed twice: its equilibrium, and its state after `duration_s`, labelled `NAME in motion`.",  dynamics_keys},

@@ -21,20 +21,27 @@ struct Place {
   }
 };
 
+bool is_whole_number(const std::string& text, std::size_t& number) {
+  const char* end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, number);
+  return error == std::errc() && rest == end;
+}
+
 /// "body.size_m[2]" from the root; empty: there is no such key or item.
 std::optional<Place> place_of(toml::table& document, const std::string& path) {
   Place place{&document};
   toml::node* node = &document;
   for (std::size_t at = 0; at < path.size();) {
     const bool item = path[at] == '[';
-    const std::size_t begin = at + (item || path[at] == '.' ? 1 : 0);
-    const std::size_t end = std::min(path.find_first_of(item ? "]" : ".[", begin), path.size());
+    if (at > 0 && !item && path[at] != '.') return {};
+    const std::size_t begin = at + (item || at > 0 ? 1 : 0), found = path.find_first_of(item ? "]" : ".[", begin);
+    if (item && found == std::string::npos) return {};
+    const std::size_t end = std::min(found, path.size());
     const std::string part = path.substr(begin, end - begin);
     at = end + (item ? 1 : 0);
     place = {node, part};
     if (part.empty() || !node || !(item ? node->is_array() : node->is_table())) return {};
-    if (item && std::from_chars(part.data(), part.data() + part.size(), place.number).ptr != part.data() + part.size())
-      return {};
+    if (item && !is_whole_number(part, place.number)) return {};
     node = place.node();
   }
   return place;
@@ -49,18 +56,33 @@ void set(const Place& place, const Value& value) {
                                       value);
 }
 
-/// Sets what the keys of `with` name.
-void replace(const TomlValue& with, toml::table& document) {
+bool has(toml::table& document, const std::string& path) {
+  const std::optional<Place> place = place_of(document, path);
+  return place && place->node();
+}
+
+/// Refuses a table in place of another, or of a list: what a key with dots means unless it is quoted.
+void check_quotes(const TomlValue& change, const Place& place) {
+  const toml::node* there = place.node();
+  if (change.node->is_table() && there && (there->is_table() || there->is_array()))
+    refuse(change, fmt::format("'{}' would be replaced by a table", place.key),
+           "a key of it, in quotes: \"mass[0].mass_kg\"");
+}
+
+/// Sets what the keys of `with` name, but for those of `whole`, where it is given, that the document has no more.
+void replace(const TomlValue& with, toml::table* whole, toml::table& document) {
   const toml::table* changes = with.node->as_table();
   if (!changes || changes->empty()) refuse(with, "is no change", "keys of the case with other values");
   for (const auto& [key, value] : *changes) {
     const std::string path(key.str());
+    if (whole && has(*whole, path) && !has(document, path)) continue;
     const std::optional<Place> place = place_of(document, path);
     const auto* list = value.as_array();
     const bool leaves_out = list && list->empty();
     if (!place || ((leaves_out || place->parent->is_array()) && !place->node()))
       refuse({&value, with.key, with.file}, fmt::format("'{}' names nothing in the case", path),
              "a key as written here, mass[0].mass_kg");
+    check_quotes({&value, with.key, with.file}, *place);
     if (leaves_out && place->parent->is_table())
       place->parent->as_table()->erase(place->key);
     else
@@ -87,6 +109,27 @@ TomlValue table_of(toml::table& document, const char* name, std::size_t number, 
   return {document.get_as<toml::array>(name)->get(number), name, file};
 }
 
+/// Refuses a path to an item of a list that a load case has replaced: it may be another one there.
+void check_items(const TomlValue& value, const std::string& path, const toml::table& replaced) {
+  for (const auto& [key, list] : replaced) {
+    const toml::array* items = list.as_array();
+    if (items && !items->empty() && !items->front().is_number() && path.starts_with(std::string(key.str()) + '['))
+      refuse(value, fmt::format("'{}' is of a list that a load case replaces", path),
+             fmt::format("a load case with changes in its items, {}", path));
+  }
+}
+
+/// Of the paths of an [[input]].
+void check_items(const TomlValue& input, const toml::table& replaced) {
+  const toml::table& table = *input.node->as_table();
+  if (const toml::node* with = table.get("with"); with && with->is_table())
+    for (const auto& [key, value] : *with->as_table())
+      check_items({&value, "input.with", input.file}, std::string(key.str()), replaced);
+  if (const toml::node* of = table.get("of"))
+    for (const TomlValue& item : one_or_several({of, "input.of", input.file}))
+      check_items(item, as_text(item), replaced);
+}
+
 }  // namespace
 
 Experiment varied(const Experiment& e, const Variation& variation) {
@@ -96,13 +139,15 @@ Experiment varied(const Experiment& e, const Variation& variation) {
   if (variation.load_case > 0) {
     const TomlValue load_case = table_of(as_written, "load_case", variation.load_case, file);
     where = location_of(load_case);
-    replace({load_case.node->as_table()->get("with"), "load_case.with", file}, document);
+    const toml::node* with = load_case.node->as_table()->get("with");
+    replace({with, "load_case.with", file}, nullptr, document);
+    if (variation.input) check_items(table_of(as_written, "input", *variation.input, file), *with->as_table());
   }
   if (variation.input) {
     const TomlValue input = table_of(as_written, "input", *variation.input, file);
     where = location_of(input);
     if (const toml::node* with = input.node->as_table()->get("with"))
-      replace({with, "input.with", file}, document);
+      replace({with, "input.with", file}, variation.load_case > 0 ? &as_written : nullptr, document);
     else
       add(input, variation.load_case == 0, document);
   }

@@ -2,9 +2,9 @@
 // Section: simulated values beside measured ones, by ASME V&V 20.
 
 /// In % of D: a difference above 0 makes the value larger.
-const ofMeasured = (v, x) => isNumber(x) ? 100 * x / v.measured : null;
-const change = (v, x) => isNumber(x) ? signed(x / v.measured, fixed(ofMeasured(v, x), 1)) : '–';
-const spread = (v, u) => isNumber(u) ? fixed(Math.abs(ofMeasured(v, u)), 1) : '–';
+const ofMeasured = (v, x) => isNumber(x) && v.measured !== 0 ? 100 * x / v.measured : null;
+const change = (v, x) => isNumber(ofMeasured(v, x)) ? signed(x / v.measured, fixed(ofMeasured(v, x), 1)) : '–';
+const spread = (v, u) => isNumber(ofMeasured(v, u)) ? fixed(Math.abs(ofMeasured(v, u)), 1) : '–';
 
 /// E with u_val on both sides; a line at 0.
 function measuredChart(values) {

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "comparisons/judge/judge.h"
 #include "comparisons/judge/patch_mean.h"
@@ -15,6 +17,7 @@ namespace {
 
 constexpr double nu = 0.3;
 const std::vector<Cells> lattices = {{4, 1, 1}, {8, 2, 2}, {16, 4, 4}};
+constexpr double on_coarsest = 1 - 4.0 / 1000;  // of a value, by its limit
 
 Row row(const std::string& model, const Cells& cells, const std::string& measure, double value) {
   Row r = of_run<Row>({model, nu, cells});
@@ -79,15 +82,15 @@ TEST(Validation, KeepsOfAnInputWhatTheFitDoesNotAnswerTo) {
   CaseResult r = fitted_case();
   validate(r);
   const ValidatedValue& q = r.validation.at(1);
-  const double width = 2 * (0.03 - 0.5 * 0.02), fit = 2 * 0.5 * 0.04;
+  const double width = on_coarsest * 2 * (0.03 - 0.5 * 0.02), fit = 2 * 0.5 * 0.04;
   ASSERT_EQ(q.inputs.size(), 3u);
-  EXPECT_NEAR(q.inputs[0].change, width, 1e-9);
-  EXPECT_NEAR(q.inputs[1].change, 2 * 0.01, 1e-9);
+  EXPECT_NEAR(*q.inputs[0].change, width, 1e-9);
+  EXPECT_NEAR(*q.inputs[1].change, on_coarsest * 2 * 0.01, 1e-9);
   EXPECT_TRUE(q.inputs[1].alternative);
-  EXPECT_NEAR(q.inputs[2].change, fit, 1e-9);
-  EXPECT_NEAR(q.u_input, std::hypot(width, fit), 1e-9);
+  EXPECT_NEAR(*q.inputs[2].change, fit, 1e-9);
+  EXPECT_NEAR(*q.u_input, std::hypot(width, fit), 1e-9);
   EXPECT_NEAR(*q.error, -0.1, 1e-6);
-  EXPECT_NEAR(*q.ratio, -*q.error / std::sqrt(std::pow(*q.u_numerical, 2) + std::pow(q.u_input, 2) + 0.03 * 0.03),
+  EXPECT_NEAR(*q.ratio, -*q.error / std::sqrt(std::pow(*q.u_numerical, 2) + std::pow(*q.u_input, 2) + 0.03 * 0.03),
               1e-12);
   EXPECT_FALSE(r.validation.at(0).ratio) << "a value that was fitted to says nothing";
 }
@@ -97,7 +100,7 @@ TEST(Validation, WithoutAFitKeepsTheWholeOfAnInput) {
   r.experiment.inputs.erase(r.experiment.inputs.begin());
   r.experiment.measured[0].fitted = false;
   validate(r);
-  EXPECT_NEAR(r.validation.at(1).u_input, 2 * 0.03, 1e-9);
+  EXPECT_NEAR(*r.validation.at(1).u_input, on_coarsest * 2 * 0.03, 1e-9);
   EXPECT_TRUE(r.validation.at(0).ratio);
 }
 
@@ -107,6 +110,98 @@ TEST(Validation, SaysNothingOfOneLatticeAlone) {
   validate(r);
   EXPECT_TRUE(r.validation.at(1).simulated);
   EXPECT_FALSE(r.validation.at(1).ratio);
+  EXPECT_EQ(r.validated, "1 not judged: q (u_num is unknown, for want of two lattices that differ).");
+}
+
+/// The run of the case with one input changed.
+VariedRun& changed(CaseResult& r, const std::string& input) {
+  return *std::find_if(r.varied.begin(), r.varied.end(), [&](const VariedRun& run) { return run.input == input; });
+}
+
+TEST(Validation, JudgesNothingOfWhichAChangedRunHasNoValue) {
+  CaseResult r = fitted_case();
+  VariedRun& wider = changed(r, "width");
+  wider.rows.clear();
+  wider.message = "springs: no equilibrium";
+  validate(r);
+  EXPECT_FALSE(r.validation.at(1).u_input);
+  EXPECT_FALSE(r.validation.at(1).ratio);
+  EXPECT_EQ(
+      r.validated,
+      "1 not judged: q (no value with 'width' changed). Without a result: 'loaded' with 'width' changed (springs: "
+      "no equilibrium).");
+}
+
+TEST(Validation, NeedsNoAlternative) {
+  CaseResult r = fitted_case();
+  changed(r, "law").rows.clear();
+  validate(r);
+  EXPECT_FALSE(r.validation.at(1).inputs.at(1).change);
+  EXPECT_TRUE(r.validation.at(1).ratio);
+}
+
+TEST(Validation, TakesChangedRunsWhateverTheirCellsAndLabels) {
+  CaseResult r = fitted_case();
+  for (Row& row : changed(r, "width").rows) row.cells = {5, 1, 1}, row.model = "springs, other";
+  CaseResult same = fitted_case();
+  validate(r);
+  validate(same);
+  EXPECT_EQ(r.validation.at(1).u_input, same.validation.at(1).u_input);
+}
+
+TEST(Validation, JudgesNothingBesideAFitThatHasNoEffect) {
+  for (const double factor : {1.0, std::nan("")}) {
+    CaseResult r = fitted_case();
+    for (const Row& before : r.rows)
+      if (before.model == "springs" && before.cells == lattices[0] && before.measure == "displacement.a.z")
+        changed(r, "E").rows.at(0).value = before.value * factor;
+    validate(r);
+    EXPECT_FALSE(r.validation.at(1).ratio) << factor;
+    EXPECT_EQ(r.validated, factor == 1 ? "1 not judged: q ('f' does not change with 'E', which was fitted to it)."
+                                       : "1 not judged: q ('f' has no value with 'E' changed).");
+  }
+}
+
+TEST(Validation, JudgesNothingWhoseUncertaintyIsNotFinite) {
+  CaseResult r = fitted_case();
+  r.experiment.measured[1].u = std::numeric_limits<double>::infinity();
+  validate(r);
+  EXPECT_FALSE(r.validation.at(1).ratio);
+  EXPECT_EQ(r.validated, "1 not judged: q (E or u_val is not finite).");
+}
+
+TEST(Validation, JudgesNothingBesideAFitThatIsNone) {
+  CaseResult r = fitted_case();
+  r.experiment.measured[0].value = 0.1 + 2.1 * 0.004;
+  validate(r);
+  EXPECT_FALSE(r.validation.at(1).ratio);
+  EXPECT_EQ(r.validated,
+            "1 not judged: q ('E' is not fitted to 'f', from which the simulated value is 2.1 u_num and u_D away).");
+}
+
+TEST(Validation, MeasuresChangesNearZeroByTheirOwnSize) {
+  CaseResult r = fitted_case();
+  r.experiment.inputs.erase(r.experiment.inputs.begin());
+  r.experiment.measured[0].fitted = false;
+  for (Row& row : r.rows)  // through 0 between the coarsest lattice and the limit
+    if (row.measure == "displacement.b.z") row.value -= 2 * on_coarsest;
+  for (Row& row : changed(r, "width").rows)
+    if (row.measure == "displacement.b.z") row.value = 0.06;
+  validate(r);
+  EXPECT_NEAR(*r.validation.at(1).u_input, 0.06, 1e-12);
+}
+
+TEST(Validation, ExtrapolatesTwoLatticesByTheRatioOfTheirCells) {
+  for (const auto& [fine, ratio] : {std::pair(Cells{12, 3, 1}, 3.0), std::pair(Cells{8, 2, 2}, 2.0)}) {
+    CaseResult r = fitted_case();
+    r.rows = {row("springs", {4, 1, 1}, "displacement.b.z", 1 + ratio), row("springs", fine, "displacement.b.z", 2)};
+    r.cells = {{4, 1, 1}, fine};
+    r.experiment.inputs.clear();
+    r.experiment.measured.erase(r.experiment.measured.begin());
+    validate(r);
+    EXPECT_NEAR(*r.validation.at(0).simulated, 1, 1e-12) << ratio;
+    EXPECT_NEAR(*r.validation.at(0).u_numerical, 1.5, 1e-12) << ratio;
+  }
 }
 
 TEST(Validation, FailsAnExpectationOnItsRatio) {

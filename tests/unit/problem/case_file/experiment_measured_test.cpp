@@ -38,7 +38,7 @@ name = "tip"
 at_m = [0.1, 0.015, 0.015]
 
 [compare]
-measures = ["probe", "mean_displacement", "displacement_error"]
+measures = ["probe", "stress", "mean_displacement", "displacement_error"]
 
 [[load_case]]
 name = "52 g"
@@ -144,6 +144,16 @@ TEST(VariedCase, HasTheLoadCaseAndTheChangedInput) {
   EXPECT_TRUE(longer.measured.empty() && longer.expectations.empty());
 }
 
+TEST(VariedCase, OfALoadCaseIsLeftAsItIsByAnAlternativeToWhatItDoesNotHave) {
+  for (const char* key :
+       {"mass = [{ name = \"other\", at_m = [0.1, 0.015, 0], mass_kg = 0.05 }]", "\"mass[0].mass_kg\" = 0.05"}) {
+    const Experiment e = parse_experiment(
+        edited("with = { kinematics = \"hencky\" }", ("with = { " + std::string(key) + " }").c_str()), "bar.toml");
+    EXPECT_TRUE(varied(e, {1, 2}).masses.empty()) << key;
+    EXPECT_DOUBLE_EQ(varied(e, {0, 2}).masses.at(0).mass, 0.05) << key;
+  }
+}
+
 struct Mistake {
   const char *name, *from, *to, *message;
 };
@@ -184,6 +194,20 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"second_unchanged", "with = { mass = [] }\n", "", "is the case as written once more"},
         Mistake{"no_such_key",
                 "\"mass[0].mass_kg\" = ", "\"mass[1].mass_kg\" = ", "'mass[1].mass_kg' names nothing in the case"},
+        Mistake{"no_dot_after_an_item",
+                "\"mass[0].mass_kg\" = ", "\"mass[0]mass_kg\" = ", "'mass[0]mass_kg' names nothing in the case"},
+        Mistake{"open_item", "\"mass[0].mass_kg\" = 0.102", "\"mass[0\" = []", "'mass[0' names nothing in the case"},
+        Mistake{"item_beyond_all_numbers",
+                "\"mass[0].mass_kg\" = ", "\"mass[99999999999999999999].mass_kg\" = ", "names nothing in the case"},
+        Mistake{"key_with_dots_unquoted", "with = { \"mass[0].mass_kg\" = 0.102 }",
+                "with = { material.density_kg_m3 = 1000 }",
+                "load_case.with: 'material' would be replaced by a table (allowed: a key of it, in quotes"},
+        Mistake{"item_of_a_replaced_list", "with = { \"mass[0].mass_kg\" = 0.102 }",
+                "with = { mass = [{ name = \"other\", at_m = [0, 0.015, 0.03], mass_kg = 0.05 }] }",
+                "input.of: 'mass[0].at_m[0]' is of a list that a load case replaces"},
+        Mistake{"fit_to_0", "value = -0.0108,", "value = 0,", "measured.values.value: is 0, to which nothing can be"},
+        Mistake{"stress", "\"displacement.tip.z\"", "\"stress.tip.xx\"",
+                "'stress.tip.xx' is not known of the equilibria of models"},
         Mistake{"nothing_to_leave_out", "with = { mass = [] }", "with = { mas = [] }",
                 "'mas' names nothing in the case"},
         Mistake{"no_such_number", "\"body.size_m[0]\"", "\"body.size_m[3]\"",
