@@ -22,6 +22,7 @@ constexpr double spring_step = 2e-8;                              // of a motion
 constexpr double breaking = 1e-4;                                 // of a sample that dries: hundreds of equilibria
 constexpr double homogenisation = 0.1;                            // of a random network, whatever its size
 constexpr double refining = 4;                                    // [s] to an accuracy, once for all parts
+constexpr double measuring = 8e-3;                                // [s] of a cube's cells in finer ones
 constexpr int reference_grids = 3;
 
 // Bodies of voxels before they are meshed.
@@ -129,6 +130,12 @@ double cubes_of(const Body& body, std::size_t lattice) {
          std::pow(body.voxel_edges[std::min(lattice, body.voxel_edges.size() - 1)], 3);
 }
 
+bool measures_cells(const Experiment& e) {
+  return std::any_of(e.models.begin(), e.models.end(), [&](const ModelChoice& choice) {
+    return !is_external(choice) && resolve(choice).coarsened.value_or(e.body.coarsened);
+  });
+}
+
 double unmeshed_unknowns(const Body& body, std::size_t lattice, int degree) {
   if (!body.is_voxels()) return unknowns(body.cells[lattice], degree);
   return 3 * nodes_per_cube * cubes_of(body, lattice) * (degree == 1 ? 1 : 8);
@@ -197,9 +204,10 @@ double unmeshed_seconds(const Experiment& e, const IsotropicMaterial& material) 
     unmeshed.experiment = e;
     add_grids_in_time(unmeshed, material, runs);
   }
-  const double refined =
-      refining * static_cast<double>(e.body.accuracies.size()) / static_cast<double>(e.materials.size());
-  return sum_of(runs.all) + sum_of(expected_variations(e)) + refined;
+  double lattices = refining * static_cast<double>(e.body.accuracies.size()) / static_cast<double>(e.materials.size());
+  for (std::size_t i = 0; i < e.body.resolutions() && measures_cells(e); ++i)
+    lattices += measuring * cubes_of(e.body, i);
+  return sum_of(runs.all) + sum_of(expected_variations(e)) + lattices;
 }
 
 }  // namespace springproof
