@@ -5,11 +5,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <set>
-#include <span>
 
 #include "comparisons/judge/measures.h"
+#include "comparisons/prepare/load_resultants.h"
 #include "comparisons/prepare/refined_lattice.h"
 #include "comparisons/prepare/sampling.h"
 #include "meshes/locate/facet_tree.h"
@@ -17,7 +16,6 @@
 #include "meshes/mesher/mesher.h"
 #include "meshes/mesher/mesher_exchange.h"
 #include "meshes/patches/refined_rims.h"
-#include "meshes/patches/rule_region.h"
 #include "meshes/patches/select_patches.h"
 #include "meshes/volume.h"
 #include "meshes/voxels/voxelise.h"
@@ -31,9 +29,8 @@ namespace {
 // Tetrahedra of the finest mesh: with quadratic elements 100,000 unknowns, some five seconds of one core.  At large
 // strain a third of them, which take a minute.
 constexpr int finest_tetrahedra = 20000, finest_at_large_strain = 7000;
-constexpr double least_spread = 1e-6;  // of an area or a volume between the meshes, above which it is reported
-constexpr double mesh_ratio = 1.5;     // edges of one mesh over those of the next finer one
-constexpr double finer_at_rims = 4;    // edges of the finest mesh over those where held patches end on a smooth surface
+constexpr double mesh_ratio = 1.5;   // edges of one mesh over those of the next finer one
+constexpr double finer_at_rims = 4;  // edges of the finest mesh over those where held patches end on a smooth surface
 
 MeshRequest body_request(const PreparedCase& prepared) {
   MeshRequest request;
@@ -278,113 +275,6 @@ void cut_lattices(PreparedCase& prepared) {
   }
 }
 
-/// What a rule names of the file's facets; nothing without these, or where it goes by normals, which noise turns.
-std::vector<FacetPart> parts_of_file(const PreparedCase& prepared, const std::string& name) {
-  const std::vector<PatchRule>& rules = prepared.experiment.patches;
-  const auto rule = std::find_if(rules.begin(), rules.end(), [&](const PatchRule& r) { return r.name == name; });
-  if (!prepared.body.facets || rule == rules.end()) return {};
-  const PatchRule as_on_the_mesh = settled(*rule, outside_of(*prepared.body.tetrahedra.back()));
-  if (as_on_the_mesh.facing) return {};
-  return parts_of(as_on_the_mesh, *prepared.body.facets);
-}
-
-/// The facets of a patch: for a patch by a rule its part of each facet, of the file or the finest mesh, cut at the
-/// border; for others whole facets.
-std::vector<FacetPart> parts_of(const PreparedCase& prepared, const std::string& name) {
-  if (std::vector<FacetPart> of_file = parts_of_file(prepared, name); !of_file.empty()) return of_file;
-  const Mesh& mesh = *prepared.body.tetrahedra.back();
-  const std::vector<PatchRule>& rules = prepared.experiment.patches;
-  const auto rule = std::find_if(rules.begin(), rules.end(), [&](const PatchRule& r) { return r.name == name; });
-  if (rule != rules.end()) return parts_of(*rule, mesh);
-  const auto X = [&](int n) -> Vec3 { return mesh.nodes.row(n).transpose(); };
-  std::vector<FacetPart> parts;
-  for (const auto& f : patch(mesh, name).facets) {
-    const Vec3 a = X(f[0]), b = X(f[1]), c = X(f[2]);
-    parts.push_back({(b - a).cross(c - a) / 2, (a + b + c) / 3, {}});
-  }
-  return parts;
-}
-
-double area(const std::vector<FacetPart>& parts) {
-  double sum = 0;
-  for (const FacetPart& p : parts) sum += p.area.norm();
-  return sum;
-}
-
-Vec3 centroid(const std::vector<FacetPart>& parts) {
-  Vec3 sum = Vec3::Zero();
-  for (const FacetPart& p : parts) sum += p.area.norm() * p.centroid;
-  return sum / area(parts);
-}
-
-Wrench of_pressure(const std::vector<FacetPart>& parts, double pressure) {
-  Wrench wrench{Vec3::Zero(), Vec3::Zero(), centroid(parts)};
-  for (const FacetPart& p : parts) {
-    wrench.force -= pressure * p.area;
-    wrench.moment -= pressure * (p.centroid - wrench.about).cross(p.area);
-  }
-  return wrench;
-}
-
-Vec3 centroid(const Mesh& mesh) {
-  const Eigen::VectorXd volumes = nodal_volumes(mesh);
-  return mesh.nodes.transpose() * volumes / volumes.sum();
-}
-
-/// The weight's resultant, of the body within the file's facets where there are such.
-Wrench weight(const PreparedCase& prepared, const Vec3& acceleration) {
-  const double density = prepared.experiment.materials.front().density;
-  if (prepared.body.facets)
-    return {density * volume(*prepared.body.facets) * acceleration, Vec3::Zero(), centroid(*prepared.body.facets)};
-  const Mesh& body = *prepared.body.tetrahedra.back();
-  return {density * volume(body, body.nodes) * acceleration, Vec3::Zero(), centroid(body)};
-}
-
-void set_wrenches(PreparedCase& prepared) {
-  const auto parts = [&](const std::string& name) { return parts_of(prepared, name); };
-  for (const PatchRule& rule : prepared.experiment.patches)
-    if (const std::vector<FacetPart> of_file = parts_of_file(prepared, rule.name); !of_file.empty())
-      prepared.body.centroids[rule.name] = centroid(of_file);
-  const auto at_centroid = [](const Vec3& force, const Vec3& c) { return Wrench{force, Vec3::Zero(), c}; };
-  const std::size_t own = prepared.loads.size() - prepared.experiment.weights;  // masses weigh where their inertia is
-  for (Load& load : std::span(prepared.loads).first(own)) {
-    if (auto* t = std::get_if<Traction>(&load)) {
-      t->wrench = at_centroid(area(parts(t->on)) * t->traction, centroid(parts(t->on)));
-    } else if (auto* q = std::get_if<Pressure>(&load)) {
-      q->wrench = of_pressure(parts(q->on), q->pressure);
-    } else if (auto* f = std::get_if<PatchForce>(&load)) {
-      f->wrench = at_centroid(f->force, centroid(parts(f->on)));
-    } else if (auto* g = std::get_if<Gravity>(&load); g && !flies(prepared.experiment)) {
-      g->wrench = weight(prepared, g->acceleration);
-    }
-  }
-}
-
-/// Relative difference of a quantity between the two finest meshes; 0: there is one.
-double spread(const PreparedCase& prepared, const std::function<double(const Mesh&)>& quantity) {
-  const auto& meshes = prepared.body.tetrahedra;
-  return meshes.size() < 2 ? 0 : std::abs(quantity(*meshes[meshes.size() - 2]) / quantity(*meshes.back()) - 1);
-}
-
-/// Sets the uncertainty of loads proportional to an area or a volume, as every mesh carries the resultants of the
-/// finest, or of the file's facets, which are certain.
-void set_load_spread(PreparedCase& prepared) {
-  const Experiment& e = prepared.experiment;
-  for (const Load& load : e.loads) {
-    const std::string* on = patch_of(load);
-    const bool by_area = std::holds_alternative<Traction>(load) || std::holds_alternative<Pressure>(load);
-    if (!by_area && (!std::holds_alternative<Gravity>(load) || flies(e))) continue;
-    if (on ? prepared.body.centroids.contains(*on) : prepared.body.facets != nullptr) continue;
-    const double off =
-        spread(prepared, [&](const Mesh& m) { return on ? nodal_areas(m, patch(m, *on)).sum() : volume(m, m.nodes); });
-    if (off <= least_spread) continue;
-    prepared.body.load_spread = std::max(prepared.body.load_spread, off);
-    prepared.body.notes.push_back(
-        fmt::format("the meshes differ by {:.2g} % in {}: so much is added to the uncertainties", 100 * off,
-                    on ? "the area of patch '" + *on + "'" : "their volume, and so the weight"));
-  }
-}
-
 /// Requests displacements at lattice nodes in the body; for those outside at the nearest surface point and at the
 /// mirror image.
 void place_samples(PreparedCase& prepared) {
@@ -465,17 +355,12 @@ void prepare_body(PreparedCase& prepared, std::string& hint) {
   check_patches(e, patches);
   cut_lattices(prepared);
   mesh_like_lattices(request, prepared);
-  set_wrenches(prepared);
-  set_load_spread(prepared);
+  set_resultants(prepared);
   check_probes(prepared);
   if (!e.reference.elements.empty()) place_samples(prepared);
 }
 
 }  // namespace
-
-bool flies(const Experiment& e) {
-  return e.dynamics && std::none_of(e.loads.begin(), e.loads.end(), prescribes_displacement);
-}
 
 void prepare_voxel_body(PreparedCase& prepared) {
   std::string hint;

@@ -11,9 +11,6 @@ namespace springproof {
 /// @throws InputError for errors in the body, its patches or its voxels.
 void prepare_voxel_body(PreparedCase& prepared);
 
-/// Whether nothing holds a body in motion: all of it falls alike, whatever its weight.
-bool flies(const Experiment& experiment);
-
 /// Reactions with torques about the rest centroids of the true body's patches instead of those of `own`.
 std::vector<PatchReaction> about_true_patches(const PreparedCase& prepared, const Mesh& own,
                                               std::vector<PatchReaction> reactions);

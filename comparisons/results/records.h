@@ -133,8 +133,7 @@ struct ErrorSplit : RunKey {
   double geometry_error = 0;        ///< that limit - body-fitted limit
   double uncertainty = 0;           ///< of the body-fitted limit and the facets, and so of the total
   double voxel_uncertainty = 0;     ///< of the limit on the voxels
-  double facets =
-      0;  ///< of the total, at most, as facets of a smooth body are chords: in `uncertainty`; 0: below a tenth
+  double facets = 0;  ///< the most that a smooth body's facets, which are chords, may add; 0: below a tenth of `total`
 };
 
 /// The deformed surface of one run, for the report's 3D view.

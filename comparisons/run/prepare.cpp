@@ -12,6 +12,7 @@
 #include "comparisons/models/motion_steps.h"
 #include "comparisons/prepare/case_checks.h"
 #include "comparisons/prepare/lattice_limits.h"
+#include "comparisons/prepare/load_resultants.h"
 #include "comparisons/prepare/sampling.h"
 #include "comparisons/prepare/voxel_body.h"
 #include "comparisons/reference/reference_grids.h"
