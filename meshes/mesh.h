@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -56,6 +57,8 @@ struct Mesh {
   std::optional<Grid> grid;             ///< set when every cell is a box of one lattice
   NodalVectors curved;  ///< second-order hexahedra: 27 points of each cell [m], x fastest in the frame of
                         ///< its corners; empty: edges are straight
+  /// Material of each cell: 0 is that of the body, r that of its region number r.  Empty: one material everywhere.
+  std::vector<std::uint8_t> materials = {};
 };
 
 /// The patch of a name.
