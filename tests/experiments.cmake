@@ -70,6 +70,13 @@ add_test(NAME experiment.ten_bodies COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/
                                             ${CMAKE_BINARY_DIR}/experiments/ten_bodies $<TARGET_FILE:springproof>)
 set_tests_properties(experiment.ten_bodies PROPERTIES LABELS long TIMEOUT 3600)
 
+if(SPRINGPROOF_PYTHON)  # that has NumPy
+  add_test(NAME experiment.one_support
+           COMMAND ${SPRINGPROOF_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/bodies/one_support.py
+                   ${CMAKE_BINARY_DIR}/experiments/one_support $<TARGET_FILE:springproof> ${CMAKE_SOURCE_DIR}/examples ${CMAKE_C_COMPILER})
+  set_tests_properties(experiment.one_support PROPERTIES LABELS long TIMEOUT 1800)
+endif()
+
 add_test(NAME experiment.figures COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/source/figures.sh ${CMAKE_SOURCE_DIR} ${CMAKE_BINARY_DIR}/experiments)
 set(drawn ${cases})
 list(FILTER drawn INCLUDE REGEX "^golec_2019/[a-z]+$")
