@@ -15,7 +15,7 @@ struct body {
   const int* fixed; /* of blocks: nodes that a support holds */
 };
 
-/* x: at the start and at the end.  Returns the last kinetic energy over the largest, or a negative number. */
+/* x: at the start and at the end.  Returns the last kinetic energy over the largest. */
 double settle(const struct body* b, const double* g, double dt, double damping, long steps, double* x, double* divided,
               double* v, double* f) {
   double largest = 0, kinetic = 0;
