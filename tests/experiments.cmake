@@ -21,7 +21,7 @@ set(long
     "kot_2014/fig.*" "kot_2015/fig_(7|8|1[0-9])"
     "golec_2019/(tables/(table2_.*|table3_tension_20|table4_shear_20|table5_torsion_45deg)|figures/fig_5_2MPa)"
     "golec_2019/ten_seconds/(table2_.*|table3_.*|table4_shear_20|table5_torsion_45deg)"
-    "bodies/(rabbit_.*|hand_pressed|bar_networks)" "cost/.*" "large_strain/(tension|bending)"
+    "bodies/(rabbit_.*|hand_pressed|bar_networks)" "cost/.*" "large_strain/(tension|bending|rabbit_measured)"
     "motion/(released_bar|struck_bar_averaged|falling_rabbit)" "boxes/struck_bar"
     "measured/.*" "verification/(manufactured_(linear|quadratic)_straight|macneal_.*_out_of_plane)")
 
