@@ -86,16 +86,16 @@ constexpr Key material_keys[] = {
   {"bulk_modulus_Pa",   "bulk modulus",           "a finite number > 0, or a list of such",      "two moduli", "1e6"},
   {"lame_lambda_Pa",    "Lame's first parameter", "a finite number, or a list of such",          "two moduli", "4e5"},
   {"density_kg_m3",     "density",                above_0,                                       "1000; required by gravity", "1100"},
-  {"relaxation",        "branches beside these moduli, which are those at long times", "a table",                                       "none", "{ branches = [{ share = 0.116, time_s = 0.27 }] }"},
+  {"relaxation",        "Maxwell elements beside these moduli", "a table",                                       "none", "{ branches = [{ share = 0.116, time_s = 0.27 }] }"},
 };
 
 constexpr Key relaxation_keys[] = {
-  {"branches", "Maxwell elements ([motion](motion.md#springs-that-relax))", "a list of up to 8 { share, time_s }", required, "[{ share = 0.116, time_s = 0.27 }, { share = 0.057, time_s = 2.6 }]"},
-  {"equilibrium_after_s", "equilibria are those after this time under constant loads; in cases without [dynamics]", above_0, "for ever", "4"},
+  {"branches", "the elements ([motion](motion.md#springs-that-relax))", "a list of up to 8 { share, time_s }", required, "[{ share = 0.116, time_s = 0.27 }, { share = 0.057, time_s = 2.6 }]"},
+  {"equilibrium_after_s", "of equilibria, under their loads; without [dynamics]", above_0, "for ever", "4"},
 };
 
 constexpr Key branch_keys[] = {
-  {"share",  "of its shear modulus in that at long times", "a number > 0, up to 1000",    required, "0.116"},
+  {"share",  "of the long-time shear modulus", "a number > 0, up to 1000",    required, "0.116"},
   {"time_s", "in which its stress falls to 1/e",           "a finite number > 0, its own", required, "0.27"},
 };
 
