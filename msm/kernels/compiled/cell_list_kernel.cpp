@@ -228,6 +228,13 @@ SPRINGPROOF_INLINE void relax(const CellList<Real>& list, Real* P, const Lanes<R
   }
 }
 
+/// v += those of the hourglass components.
+template <class Real>
+SPRINGPROOF_INLINE void add_overstrains(const Lanes<Real> (&Z)[overstrain_count], Lanes<Real> (&v)[4][3]) {
+  for (int m = 0; m < 4; ++m)
+    for (int j = 0; j < 3; ++j) v[m][j] += Z[6 + 3 * m + j];
+}
+
 /// P += G F Z.
 template <class Real>
 SPRINGPROOF_INLINE void add_relaxing_stress(const Lanes<Real>& shear, const Lanes<Real> (&F)[3][3],
@@ -263,16 +270,20 @@ SPRINGPROOF_INLINE void forces_of_cells(const CellList<Real>& list, long block, 
     measured_stress<Real>(list.forms + cell_number::of_form * cells<Real> * block + at, c, D, F, dilatation, v, P, w);
   } else {
     const LatticeAveraged<V> springs = times_area(list.springs, c.area);
+    if constexpr (relaxing) add_overstrains<Real>(Z, v);  // branches of averaged springs have their constants
     add_hourglass_forces(springs, c, v, w);
     first_stress<curve>(springs, D, inverse_transposed, dilatation, P);
   }
   if constexpr (relaxing) {
     const LatticeAveraged<V> branches = times_area(list.relaxing, c.area);
-    V Z_v[4][3];
-    for (int m = 0; m < 4; ++m)
-      for (int j = 0; j < 3; ++j) Z_v[m][j] = Z[6 + 3 * m + j];
     add_relaxing_stress<Real>(branches.shear, F, Z, P);
-    add_hourglass_forces(branches, c, Z_v, w);
+    if constexpr (curve == LatticeCurve::none) {
+      V of_patterns[4][3];
+      for (auto& of_pattern : of_patterns)
+        for (V& entry : of_pattern) entry = 0;
+      add_overstrains<Real>(Z, of_patterns);
+      add_hourglass_forces(branches, c, of_patterns, w);
+    }
   }
   if constexpr (viscous) {
     const LatticeAveraged<V> dashpots = times_area(list.dashpots, c.area);
