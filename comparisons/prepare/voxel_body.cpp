@@ -97,13 +97,26 @@ double chords(const MeshedBody& body) {
   return share < most ? share : 0;
 }
 
+/// The three meshes of a reference, though there be none: the finest is the body that springs are cut from, the same in
+/// every command.
+/// @param needed if not, a body of which there are not three has one
+MeshedBody mesh_with_coarser_ones(MeshRequest request, bool needed) {
+  request.coarser = {mesh_ratio * mesh_ratio, mesh_ratio};
+  try {
+    return mesh_body(request);
+  } catch (const InputError&) {
+    if (needed) throw;
+  }
+  request.coarser.clear();
+  return mesh_body(request);
+}
+
 void mesh_the_body(MeshRequest request, PreparedCase& prepared, std::string& hint) {
   const Experiment& e = prepared.experiment;
   request.edge = e.reference.edge;
   const bool large_strain = e.model_kinematics() == Kinematics::finite && !e.dynamics;
   request.tetrahedra = large_strain ? finest_at_large_strain : finest_tetrahedra;
-  if (!e.reference.elements.empty() || e.reference.in_time) request.coarser = {mesh_ratio * mesh_ratio, mesh_ratio};
-  MeshedBody body = mesh_body(request);
+  MeshedBody body = mesh_with_coarser_ones(request, !e.reference.elements.empty() || e.reference.in_time);
   prepared.body.notes = {size_note(body.mesh)};
   prepared.body.notes.insert(prepared.body.notes.end(), body.notes.begin(), body.notes.end());
   hint = scale_hint(body.mesh, e.body);

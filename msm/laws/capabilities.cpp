@@ -52,7 +52,10 @@ std::string together_lack(const MassSpringModel& model, Capability what) {
   }
 }
 
+constexpr const char* of_several = "its cells are of several materials";
+
 std::string mass_average_lacks(const Network& network) {
+  if (!network.cells.materials.empty()) return of_several;
   if (network.cells.empty()) return "its network has no cells";
   if (network.cells.kind() == CellKind::sizes) return "its cells are of several sizes";
   if (std::any_of(network.anchors.begin(), network.anchors.end(), [](const Anchor& a) { return a.axes != 7; }))
@@ -95,6 +98,7 @@ std::string lacks(const Network& network, Capability what) {
       return cells.grid && !periodic ? "" : "its network is no lattice of equal cells, or is periodic";
     case relaxation:
       if (!network.image_of.empty()) return "its network is periodic";
+      if (!cells.materials.empty()) return "its cells are of several materials";
       return cells.empty() ? "its network has no cells" : "";
     case mass_average:
       return mass_average_lacks(network);

@@ -7,8 +7,8 @@
 
 namespace springproof {
 
-/// What the energy of each cell depends on beside the positions of its corners: one of full cells of a size, one of
-/// each cut cell.
+/// What the energy of each cell depends on beside the positions of its corners: one of full cells of a size and
+/// material, one of each cut cell.
 class CellForms {
  public:
   CellForms() = default;

@@ -119,8 +119,8 @@ struct AddSecantForces {
     }
   }
 
-  void operator()(const AveragedSprings& law) const {
-    const auto at = [&](const Mat3& C, Derivative up_to) {
+  void operator()(const AveragedSprings& all) const {
+    const auto stress = [](const AveragedSprings& law, const Mat3& C, Derivative up_to) {
       return stress_in(C, up_to, [&](const Mat3& F) {
         StrainEnergy W = springs_energy(law.curve, law.shear_modulus, F, up_to);
         add_volume_term(law.curve, law.lame_lambda - law.shear_modulus, F, up_to, W);
@@ -136,6 +136,8 @@ struct AddSecantForces {
       Eigen::Matrix<double, 3, 4> w;
       Eigen::Map<Eigen::Matrix<double, 12, 1>>(w.data()) =
           form.hourglass * Eigen::Map<const Eigen::Matrix<double, 12, 1>>(v.data());
+      const AveragedSprings& law = all.in(network.cells.material(c));
+      const auto at = [&](const Mat3& C, Derivative up_to) { return stress(law, C, up_to); };
       const Mat3 S = secant_stress(F0.transpose() * F0, F1.transpose() * F1, at);
       subtract((form.volume * F * S + q * w.transpose()) * form.gradient + F * w * corner_patterns().transpose(),
                network.cells.corners[c], f);
