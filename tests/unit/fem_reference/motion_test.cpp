@@ -102,7 +102,8 @@ TEST(FemMotion, ABranchOfALongTimeIsStiffnessOneOfAShortTimeIsNothing) {
         };
         const NodalVectors elastic = end({}, 1), stiff = end({}, 1.2), size = end({{{0.2, 0.5}}}, 1);
         EXPECT_GT(largest(stiff - elastic), 0.05 * largest(elastic));
-        EXPECT_LT(largest(end({{{0.2, 1e9}}}, 1) - stiff), 2e-4 * largest(stiff)) << law << nu << energy_momentum;
+        const double same = nu < 0.4 ? 2e-4 : 0.03;  // pressures leave dilatation at points, which branches do not see
+        EXPECT_LT(largest(end({{{0.2, 1e9}}}, 1) - stiff), same * largest(stiff)) << law << nu << energy_momentum;
         EXPECT_LT(largest(end({{{0.2, 1e-9}}}, 1) - elastic), 1e-6 * largest(elastic)) << law << nu;
         EXPECT_GT(largest(size - elastic), 0.01 * largest(elastic));
         EXPECT_GT(largest(size - stiff), 0.01 * largest(stiff));
