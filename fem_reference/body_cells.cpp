@@ -33,6 +33,7 @@ CellLaw law_of(const GridProblem& problem, const Body3& body) {
 BodyCells::BodyCells(const GridProblem& problem, const Body3& body, const dealii::DoFHandler<3>& dof_handler,
                      const std::vector<Prescribed>& held)
     : law_(law_of(problem, body)),
+      relaxation_(problem.motion ? problem.motion->relaxation : Relaxation{}),
       form_(describe({body.has_tetrahedra(), problem.degree}, law_.form)),
       number_(dof_handler.n_dofs(), 0),
       component_(dof_handler.n_dofs()) {
@@ -68,6 +69,7 @@ BodyCells::BodyCells(const GridProblem& problem, const Body3& body, const dealii
     }
     c.mass = problem.material.density * N.transpose() * c.shape.weights.asDiagonal() * N;
     if (const auto more = attached.find(cell->active_cell_index()); more != attached.end()) c.mass += more->second;
+    c.overstrains.assign(points * relaxation_.branches.size(), Eigen::Matrix3d::Zero());
     cell->get_dof_indices(dofs);
     c.u.resize(dofs.size());
     for (unsigned int i = 0; i < dofs.size(); ++i) {
@@ -135,7 +137,8 @@ std::optional<double> BodyCells::energy(const Unknowns& x) const {
 double BodyCells::residual(const Unknowns& x, const Viscous& viscous, const Unknowns* before, Unknowns& r) const {
   r = zero();
   double smallest = std::numeric_limits<double>::infinity();
-  const Unknowns rate = rate_of(x, viscous);
+  const Unknowns rate = rate_of(x, viscous), from{viscous.before, x.p};
+  const std::vector<RelaxingStep> branches = branches_over(viscous);
   for (const Cell& cell : cells_) {
     const CellVector at = read(cell, x);
     CellVector f = before ? step_residual(law_, cell.shape, read(cell, *before), at, smallest)
@@ -143,20 +146,39 @@ double BodyCells::residual(const Unknowns& x, const Viscous& viscous, const Unkn
     if (!(smallest > 0)) break;
     if (viscous.acts())
       add_viscosity(law_, cell.shape, at.u, read(cell, rate).u, viscous.time, viscous.per_rate, f, nullptr);
+    if (!branches.empty())
+      add_relaxation(law_, cell.shape, read(cell, from).u, at.u, branches, cell.overstrains, f, nullptr);
     for (std::size_t i = 0; i < cell.u.size(); ++i) r.u[cell.u[i]] += f.u(i / 3, i % 3);
     for (std::size_t k = 0; k < cell.p.size(); ++k) r.p[cell.p[k]] += f.p[k];
   }
   return smallest;
 }
 
+std::vector<RelaxingStep> BodyCells::branches_over(const Viscous& step) const {
+  std::vector<RelaxingStep> branches;
+  if (step.per_rate > 0)
+    for (const auto& [share, time] : relaxation_.branches)
+      branches.push_back({share, BranchStep::of(2 / step.per_rate / time)});
+  return branches;
+}
+
+void BodyCells::relax(const Unknowns& x, const Viscous& viscous) {
+  const Unknowns from{viscous.before, x.p};
+  const std::vector<RelaxingStep> branches = branches_over(viscous);
+  if (branches.empty()) return;
+  for (Cell& cell : cells_) advance(law_, cell.shape, read(cell, from).u, read(cell, x).u, branches, cell.overstrains);
+}
+
 void BodyCells::factor(const Unknowns& x, const Viscous& viscous, double inertia) {
   matrix_->clear();
   CellTangent tangent;
+  const std::vector<RelaxingStep> branches = branches_over(viscous);
   for (const Cell& cell : cells_) {
     double smallest = 1;
     const CellVector at = read(cell, x);
     CellVector r = cell_residual(law_, cell.shape, at, smallest, &tangent);
     if (viscous.acts()) add_viscosity(law_, cell.shape, at.u, 0 * at.u, viscous.time, viscous.per_rate, r, &tangent);
+    if (!branches.empty()) add_relaxation(law_, cell.shape, at.u, at.u, branches, cell.overstrains, r, &tangent);
     CellMatrix uu = (tangent.uu + tangent.uu.transpose()) / 2;
     for (Eigen::Index a = 0; a < cell.mass.rows(); ++a)
       for (Eigen::Index b = 0; b < cell.mass.cols(); ++b)

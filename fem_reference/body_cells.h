@@ -21,10 +21,10 @@ struct Unknowns {
   Eigen::VectorXd u, p;
 };
 
-/// Viscosity in a step: the rate of displacements is per_rate * (x - before).
+/// Viscosity and branches in a step, whose middle is x: the rate of displacements is per_rate * (x - before).
 struct Viscous {
   double time = 0;      ///< of retardation [s]; 0: none
-  double per_rate = 0;  ///< [1/s]
+  double per_rate = 0;  ///< [1/s]; 0: at rest, without branches
   Eigen::VectorXd before;
 
   bool acts() const { return time * per_rate > 0; }
@@ -54,6 +54,8 @@ class BodyCells {
   /// are not valid.
   /// `before`, if not null: of the energy-momentum step from it whose middle x is (cell_equations.h).
   double residual(const Unknowns& x, const Viscous& viscous, const Unknowns* before, Unknowns& r) const;
+  /// Makes the step of the branches whose middle is x.
+  void relax(const Unknowns& x, const Viscous& viscous);
   /// Factors of inertia M + dr/dx, symmetrised.
   void factor(const Unknowns& x, const Viscous& viscous, double inertia);
   /// The correction by the factors; zero where held.
@@ -66,13 +68,16 @@ class BodyCells {
     std::vector<Eigen::Index> u;           ///< 3 a + i: component i of node a
     std::vector<Eigen::Index> p;           ///< pressures
     std::vector<PetscInt> rows_u, rows_p;  ///< in the matrix; -1: held
+    Overstrains overstrains;               ///< of the branches at the end of the last step
   };
   CellVector read(const Cell& cell, const Unknowns& x) const;
+  std::vector<RelaxingStep> branches_over(const Viscous& step) const;
   static Unknowns rate_of(const Unknowns& x, const Viscous& viscous) {
     return {viscous.acts() ? Eigen::VectorXd(viscous.per_rate * (x.u - viscous.before)) : x.u, x.p};
   }
 
   CellLaw law_;
+  Relaxation relaxation_;
   std::string form_;
   std::vector<Cell> cells_;
   std::vector<PetscInt> number_;  ///< of each degree of freedom among the free ones; -1: held

@@ -95,7 +95,9 @@ class MidpointRule {
       offset[i] = acceleration - inertia * middle.u[i];
     }
     const Unknowns* const start = motion_.energy_momentum ? &x_ : nullptr;
-    if (!solve(middle, load_factor(from, to), {motion_.viscosity, 2 / dt, x_.u}, start, inertia, offset)) return false;
+    const Viscous viscous{motion_.viscosity, 2 / dt, x_.u};
+    if (!solve(middle, load_factor(from, to), viscous, start, inertia, offset)) return false;
+    cells_.relax(middle, viscous);
     const VectorXd p = start ? VectorXd(2 * middle.p - x_.p) : middle.p;  // at the end of the step, or in its middle
     last_p_ = x_.p;
     x_.p = p;

@@ -82,18 +82,21 @@ TimedStep timed_lattice(const MassSpringModel& model, const MotionOptions& optio
 
 template <class Real>
 TimedStep motion_of_cells(const MassSpringModel& model, const MotionOptions& options) {
-  const MotionOptions half = {.time_step = 0.5 * safe_time_step(model, density), .threads = options.threads};
-  const auto kernel =
-      std::make_shared<ListMotion<Real>>(std::make_unique<CellForces<Real>>(model), model, density, half);
+  const double safe = relaxing_time_step(model, density, options.relaxation, safe_time_step(model, density));
+  const MotionOptions half = {.time_step = 0.5 * safe, .threads = options.threads};
+  auto forces = std::make_unique<CellForces<Real>>(model);
+  forces->set_branches(options.relaxation.relaxation, options.relaxation.cells, *half.time_step);
+  const auto kernel = std::make_shared<ListMotion<Real>>(std::move(forces), model, density, half);
   const NodalVectors x = moved(model.network);
   kernel->set_state(x, NodalVectors::Zero(x.rows(), 3));
   TimedStep motion =
       new_motion(fmt::format("{}, {}{}", kernel->kernel(), name_of(instruction_set()),
                              kernel->threads() == 1 ? "" : fmt::format(", {} threads", kernel->threads())),
                  model, options.precision);
-  const double c = double(model.network.cells.size()), n = double(motion.nodes), real = sizeof(Real);
-  motion.work.streamed = (10 * real + 32) * c + 20 * real * n;
-  motion.work.kept = (10 * real + 32) * c + (24 * real + 28) * n;
+  const double c = double(model.network.cells.size()), n = double(motion.nodes), real = sizeof(Real),
+               state = overstrain_count * double(options.relaxation.relaxation.branches.size());
+  motion.work.streamed = ((10 + 2 * state) * real + 32) * c + 20 * real * n;
+  motion.work.kept = ((10 + state) * real + 32) * c + (24 * real + 28) * n;
   motion.advance = [kernel](long steps) { kernel->advance(steps); };
   return motion;
 }
@@ -132,7 +135,7 @@ TimedStep motion_by_forces(const MassSpringModel& model) {
 std::optional<TimedStep> fastest_motion(const MassSpringModel& model, const MotionOptions& options) {
   if (LatticeMotion::suits(model, options)) return timed_lattice(model, options);
   if (options.viscosity.acts() || options.mass_consistency > 0) return {};
-  if (can(model, Capability::list_kernels))
+  if (can(model, Capability::list_kernels) && !options.relaxation.acts())
     return options.precision == Precision::float64 ? motion_of_springs<double>(model, options)
                                                    : motion_of_springs<float>(model, options);
   if (can(model, Capability::cell_kernels))

@@ -182,6 +182,7 @@ std::optional<Opinion> ask_fem(const Question& q, Status& status) {
   NodalVectors points(nodes.rows() + probes.rows(), 3);
   points << nodes, probes;
   fem::Request request = fem::request_of(q.experiment(), q.material);
+  request.material = q.material;
   request.points = points;
   for (const Cells& cells : three_grids(q.prepared.reference_cells)) {
     request.grids.emplace_back().cells = cells;  // Q2
@@ -327,7 +328,7 @@ int cross_check(const std::filesystem::path& file, const CrossCheckOptions& opti
   std::vector<IsotropicMaterial> materials = experiment.materials;
   if (options.poisson_ratio) materials = {material_of(experiment, options.poisson_ratio)};
   std::vector<Question> questions;
-  for (const IsotropicMaterial& m : materials) questions.push_back(question(prepared, m, options));
+  for (const IsotropicMaterial& m : materials) questions.push_back(question(prepared, experiment.at_rest(m), options));
   if (!programs_are_there()) return no_program;
   if (children_interrupted()) return interrupted_status;
   int differing = 0;

@@ -65,15 +65,17 @@ std::optional<Swings> swings_of(const std::vector<double>& t, const std::vector<
 }
 
 std::optional<DampedSwings> damped_swings_of(const std::vector<double>& time, const std::vector<double>& value,
-                                             const Swings& swings) {
+                                             const Swings& swings, const Relaxation& creep) {
   const auto first = std::lower_bound(time.begin(), time.end(), swings.begin) - time.begin();
   const auto n = static_cast<Eigen::Index>(time.size()) - first;
   const Eigen::ArrayXd t = Eigen::Map<const Eigen::ArrayXd>(time.data() + first, n) - swings.begin;
   const Eigen::VectorXd u = Eigen::Map<const Eigen::VectorXd>(value.data() + first, n);
   // What is left of u beside the best amplitudes at decay d and frequency w of the zeros [1/s].
   const auto rest = [&](double d, double w) -> Eigen::VectorXd {
-    Eigen::MatrixXd A(n, 3);
-    A << (-d * t).exp() * (w * t).cos(), (-d * t).exp() * (w * t).sin(), Eigen::ArrayXd::Ones(n);
+    Eigen::MatrixXd A(n, 3 + static_cast<Eigen::Index>(creep.branches.size()));
+    A.leftCols(3) << (-d * t).exp() * (w * t).cos(), (-d * t).exp() * (w * t).sin(), Eigen::ArrayXd::Ones(n);
+    for (std::size_t i = 0; i < creep.branches.size(); ++i)
+      A.col(3 + static_cast<Eigen::Index>(i)) = (-t / creep.branches[i].time).exp();
     return u - A * least_squares(A, u).X;
   };
   double w = 2 * std::numbers::pi / swings.period, d = 0;

@@ -4,6 +4,8 @@
 #include <optional>
 #include <vector>
 
+#include "problem/relaxation.h"
+
 namespace springproof {
 
 struct Swings {
@@ -23,11 +25,11 @@ struct DampedSwings {
   double damping_ratio = 0;  ///< share of critical damping
 };
 
-/// The damped cosine, with a constant, that is nearest to the record from the first of these swings on, by least
-/// squares: overtones, which peaks and crossings mix in, are nearly orthogonal to it.  Nothing if no such motion is
-/// found.
+/// The damped cosine, with a constant and the creep of each branch, that is nearest to the record from the first of
+/// these swings on, by least squares: overtones, which peaks and crossings mix in, are nearly orthogonal to it. Nothing
+/// if no such motion is found.
 std::optional<DampedSwings> damped_swings_of(const std::vector<double>& time, const std::vector<double>& value,
-                                             const Swings& swings);
+                                             const Swings& swings, const Relaxation& creep = {});
 
 /// When a quantity first departs from its first value by a tenth of its largest departure [s]; nothing if it is
 /// constant.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <numbers>
 #include <numeric>
 
 #include "comparisons/reference/reference_grids.h"
@@ -33,6 +34,7 @@ fem::Request mode_request(const PreparedCase& prepared, const IsotropicMaterial&
   const Experiment& e = prepared.experiment;
   const std::string element = element_of(prepared);
   fem::Request request = fem::request_of(e, material);
+  request.material = material;
   request.law = "linear";
   request.loads = supports_of(e);
   request.modes = modes;
@@ -95,6 +97,36 @@ void put_in_order(ReferenceModes& m) {
   }
 }
 
+constexpr int fixed_point_steps = 20;  // more than a frequency of 12 digits needs
+
+/// The frequencies of a material that relaxes, each at the storage modulus of itself: between those of long times and
+/// of a sudden strain, of whose shear modulus the square of a frequency is all but a linear function.
+/// @param low modes of long times, whose frequencies become these
+/// @param high of a sudden strain
+void relax(const Relaxation& relaxation, const ModeSet& high, const Eigen::VectorXd& weights, ModeSet& low) {
+  const std::vector<ModePair> pairs = pair_modes(low, high, weights);
+  const double sudden = relaxation.instantaneous();
+  for (std::size_t i = 0; i < low.frequencies.size(); ++i) {
+    double& f = low.frequencies[i];
+    const double square = f * f,
+                 other = pairs[i].partner ? std::pow(high.frequencies[*pairs[i].partner], 2) : sudden * square,
+                 slope = (other - square) / (sudden - 1);
+    for (int step = 0; step < fixed_point_steps; ++step)
+      f = std::sqrt(square + slope * (relaxation.storage(2 * std::numbers::pi * f) - 1));
+  }
+}
+
+/// Modes of a material, which may relax.
+/// @param of the modes of a solid
+template <class Modes>
+ModeSet relaxing_modes(const Relaxation& relaxation, const IsotropicMaterial& material, const Eigen::VectorXd& weights,
+                       const Modes& of) {
+  ModeSet modes = of(material);
+  if (relaxation.acts() && !modes.frequencies.empty())
+    relax(relaxation, of(with_shear(material, relaxation.instantaneous())), weights, modes);
+  return modes;
+}
+
 ReferenceModes reference_modes(const PreparedCase& prepared, const IsotropicMaterial& material, int modes) try {
   ReferenceModes out;
   const ElementGrids grids{element_of(prepared), solve_each(mode_request(prepared, material, modes + modes_beside))};
@@ -105,10 +137,19 @@ ReferenceModes reference_modes(const PreparedCase& prepared, const IsotropicMate
     }
   out.form = grids.grids[2].form;
   out.rigid_motions = grids.grids[2].rigid_motions;
-  out.finest = modes_at_nodes(prepared, grids.grids[2]);
+  std::vector<ModeSet> of_grids;
+  for (const fem::Solution& s : grids.grids) of_grids.push_back(modes_at_nodes(prepared, s));
+  const Relaxation& relaxation = prepared.experiment.relaxation;
+  if (relaxation.acts()) {
+    const std::vector<fem::Solution> sudden =
+        solve_each(mode_request(prepared, with_shear(material, relaxation.instantaneous()), modes + modes_beside));
+    for (std::size_t g = 0; g < sudden.size(); ++g)
+      relax(relaxation, modes_at_nodes(prepared, sudden[g]), weights_of_nodes(prepared), of_grids[g]);
+  }
+  out.finest = of_grids[2];
   std::vector<std::vector<double>> values(modes);
-  for (const fem::Solution& s : grids.grids) {  // modes may cross from grid to grid
-    const auto pairs = pair_modes(out.finest, modes_at_nodes(prepared, s), weights_of_nodes(prepared));
+  for (const ModeSet& s : of_grids) {  // modes may cross from grid to grid
+    const auto pairs = pair_modes(out.finest, s, weights_of_nodes(prepared));
     for (int i = 0; i < modes; ++i) values[i].push_back(s.frequencies[pairs[i].partner.value_or(i)]);
   }
   const TrustedOrders orders{.highest = has_smooth_modes(prepared) ? eigenvalue_order : clamped_order};
@@ -146,15 +187,19 @@ ModelFrequencies frequencies_of(const PreparedCase& prepared, const Lattice& lat
   ModelFrequencies out;
   out.label = prepared.experiment.models[number].label;
   out.consistency = theta;
-  const auto [model, embedding] = build_on(prepared, lattice, prepared.models[number], material, false);
-  const BoundaryConditions supports = transfer(supports_of(prepared.experiment), *lattice.mesh, embedding,
-                                               model.network, material.density, Kinematics::linear);
-  const NaturalModes found = natural_modes(model, supports.fixed, material.density, theta, modes + modes_beside);
-  out.message = found.message;
-  out.solver = found.solver;
-  out.seconds = found.seconds;
-  out.modes.frequencies = found.frequencies;
-  for (const NodalVectors& u : found.shapes) out.modes.shapes.emplace_back(embedding.weights * u);
+  const auto modes_of = [&](const IsotropicMaterial& solid) {
+    const auto [model, embedding] = build_on(prepared, lattice, prepared.models[number], solid, false);
+    const BoundaryConditions supports = transfer(supports_of(prepared.experiment), *lattice.mesh, embedding,
+                                                 model.network, solid.density, Kinematics::linear);
+    const NaturalModes found = natural_modes(model, supports.fixed, solid.density, theta, modes + modes_beside);
+    if (out.message.empty()) out.message = found.message;
+    out.solver = found.solver;
+    out.seconds += found.seconds;
+    ModeSet at_nodes{found.frequencies, {}};
+    for (const NodalVectors& u : found.shapes) at_nodes.shapes.emplace_back(embedding.weights * u);
+    return at_nodes;
+  };
+  out.modes = relaxing_modes(prepared.experiment.relaxation, material, nodal_volumes(*lattice.mesh), modes_of);
   return out;
 } catch (const InputError&) {
   throw;
@@ -189,14 +234,19 @@ std::map<std::string, double> lowest_frequencies(const PreparedCase& prepared, c
 
 std::map<std::string, double> lowest_frequencies(const PreparedCase& prepared, const Lattice& lattice,
                                                  const std::string& element, const IsotropicMaterial& material) try {
-  fem::Request request = fem::request_of(prepared.experiment, material);
-  request.law = "linear";
-  request.loads = supports_of(prepared.experiment);
-  request.modes = modes_for_axes + modes_beside;
-  request.points = lattice.mesh->nodes;
-  request.grids = {{lattice.cells, element}};
-  const fem::Solution solved = solve_each(request).front();
-  return by_axis({solved.frequencies, solved.shapes}, nodal_volumes(*lattice.mesh));
+  const Eigen::VectorXd weights = nodal_volumes(*lattice.mesh);
+  const auto modes_of = [&](const IsotropicMaterial& m) -> ModeSet {
+    fem::Request request = fem::request_of(prepared.experiment, m);
+    request.material = m;
+    request.law = "linear";
+    request.loads = supports_of(prepared.experiment);
+    request.modes = modes_for_axes + modes_beside;
+    request.points = lattice.mesh->nodes;
+    request.grids = {{lattice.cells, element}};
+    const fem::Solution solved = solve_each(request).front();
+    return {solved.frequencies, solved.shapes};
+  };
+  return by_axis(relaxing_modes(prepared.experiment.relaxation, material, weights, modes_of), weights);
 } catch (const std::runtime_error&) {  // as a grid without a result
   return {};
 }

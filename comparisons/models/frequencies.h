@@ -51,7 +51,7 @@ struct FrequencyTable {
 };
 
 /// frequency.x|y|z [Hz] of a model on a lattice, masses lumped: its lowest natural frequencies whose motion is mostly
-/// along an axis; empty: the model has no modes.
+/// along an axis; empty: the model has no modes.  Where the material relaxes, at the storage modulus of each.
 std::map<std::string, double> lowest_frequencies(const PreparedCase& prepared, const Lattice& lattice,
                                                  std::size_t number, const IsotropicMaterial& material);
 

@@ -114,8 +114,9 @@ ModelSample run_sample(const PreparedCase& prepared, const Lattice& lattice, std
                        const ModelParameters& parameters, const IsotropicMaterial& material) {
   const bool in_motion = prepared.experiment.models[number].in_motion;
   const auto solve = prepared.experiment.cost ? solve_and_count : solve_network;
+  const IsotropicMaterial solid = in_motion ? material : prepared.experiment.at_rest(material);
   ModelSample sample =
-      measured(prepared, lattice, parameters, solve(prepared, lattice, parameters, material, in_motion), in_motion);
+      measured(prepared, lattice, parameters, solve(prepared, lattice, parameters, solid, in_motion), in_motion);
   if (asked(prepared.experiment, "frequency") && sample.state.ok && !in_motion)
     sample.scalars.merge(lowest_frequencies(prepared, lattice, number, material));
   return sample;

@@ -29,7 +29,8 @@ std::string liveliest(const HistoryRecord& h, const std::string& probe) {
   return best;
 }
 
-std::map<std::string, double> measured_in_time(const MotionChoice& motion, const HistoryRecord& h) {
+std::map<std::string, double> measured_in_time(const Experiment& e, const HistoryRecord& h) {
+  const MotionChoice& motion = *e.dynamics;
   const std::vector<double>& u = *series(h, h.probe);
   const double settled = motion.course.settled();
   const auto first =
@@ -38,8 +39,8 @@ std::map<std::string, double> measured_in_time(const MotionChoice& motion, const
   if (const auto swings = swings_of({h.time.begin() + first, h.time.end()}, {u.begin() + first, u.end()})) {
     out["period"] = swings->period;
     out["amplitude"] = swings->amplitude;
-    const bool damped = motion.damping > 0 || motion.viscosity > 0;
-    if (const auto mode = damped ? damped_swings_of(h.time, u, *swings) : std::nullopt) {
+    const bool damped = motion.damping > 0 || motion.viscosity > 0 || e.relaxation.acts();
+    if (const auto mode = damped ? damped_swings_of(h.time, u, *swings, e.relaxation) : std::nullopt) {
       out["period"] = mode->period;
       out["damping_ratio"] = mode->damping_ratio;
     }
@@ -138,10 +139,11 @@ void measure(const MovingNetwork& moving, const BoundaryConditions& last, Histor
   const Eigen::VectorXd masses = moving.masses();
   if (!e.probes.empty() && h.time.size() > 1) {
     h.probe = liveliest(h, e.probes.front().name);
-    h.measured = measured_in_time(motion, h);
+    h.measured = measured_in_time(e, h);
   }
   const bool damped = motion.damping > 0;
-  if (!damped && motion.viscosity == 0 && !landed(h)) measure_energy(first_settled(motion, h), h);
+  if (!damped && motion.viscosity == 0 && !e.relaxation.acts() && !landed(h))
+    measure_energy(first_settled(motion, h), h);
   const std::vector<double>& kinetic = *series(h, "kinetic_energy");
   const double scale = std::sqrt(2 * masses.sum() * *std::max_element(kinetic.begin(), kinetic.end()));
   const bool flies = std::none_of(last.fixed.begin(), last.fixed.end(), [](bool f) { return f; });

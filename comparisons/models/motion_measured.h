@@ -18,7 +18,7 @@ std::string liveliest(const HistoryRecord& history, const std::string& probe);
 
 /// "period" [s] and "amplitude" [m] of HistoryRecord::probe once the loads have their final size, of a shaken body from
 /// the start; of a pulse the "arrival" [s], of a damped motion the "damping_ratio"; each if there is one.
-std::map<std::string, double> measured_in_time(const MotionChoice& motion, const HistoryRecord& history);
+std::map<std::string, double> measured_in_time(const Experiment& experiment, const HistoryRecord& history);
 
 /// Period and amplitude of the first probe, and what is conserved: the energy of undamped motions after the loads have
 /// their final size, the momentum along axes in which nothing is held or loaded.

@@ -21,59 +21,60 @@ MotionRecorder::MotionRecorder(const MovingNetwork& moving, const MotionOptions&
       cut_(moving.lattice.cut && moving.network().cells.cut()),
       record_(record) {}
 
-void MotionRecorder::operator()(double time, const NodalVectors& x, const NodalVectors& of_step,
-                                const BoundaryConditions& conditions) {
+void MotionRecorder::operator()(const MotionSample& now) {
   const MassSpringModel& model = moving_.built.model;
-  const NodalVectors s = at_positions(x, of_step, conditions), v = average_.velocities(s, conditions.fixed);
-  record_.history.time.push_back(time);
-  const Field field = field_at(x, v, conditions);
+  const NodalVectors s = at_positions(now), v = average_.velocities(s, now.conditions.fixed);
+  record_.history.time.push_back(now.time);
+  const Field field = field_at(now, v);
   next_ = 0;
   add("kinetic_energy", "J", 0.5 * (s.cwiseProduct(v).rowwise().sum().array() * mass_.array()).sum());
-  if (can(model, Capability::energy)) add("elastic_energy", "J", energy(model, x));
-  add_momenta(x, s);
-  const NodalVectors u = x - model.network.X;
-  add("load_potential", "J", -conditions.external.cwiseProduct(u).sum());
+  if (can(model, Capability::energy)) add("elastic_energy", "J", energy(model, now.x));
+  add_momenta(now.x, s);
+  const NodalVectors u = now.x - model.network.X;
+  add("load_potential", "J", -now.conditions.external.cwiseProduct(u).sum());
   add("volume_change", "1", cut_ ? volume_change(model.network, u).exact : field.volume_change);
   for (const PatchReaction& r : field.reactions) add_vector("force." + r.patch, "N", r.force);
   if (contact_) add_impulse(contact_->take_impulse());
   add_probes(u, field);
   const MotionChoice& motion = moving_.motion();
-  if (time * motion.frames >= (record_.frames.size() + 1) * motion.duration * (1 - 1e-9))
-    record_.frames.emplace_back(time, field.displacement);
+  if (now.time * motion.frames >= (record_.frames.size() + 1) * motion.duration * (1 - 1e-9))
+    record_.frames.emplace_back(now.time, field.displacement);
 }
 
 /// The velocity at the time of the positions: that of explicit steps is half a step behind.
-NodalVectors MotionRecorder::at_positions(const NodalVectors& x, NodalVectors v,
-                                          const BoundaryConditions& conditions) const {
+NodalVectors MotionRecorder::at_positions(const MotionSample& now) const {
+  NodalVectors v = now.v;
   if (behind_ == 0) return v;
-  const NodalVectors f = forces(moving_.built.model, x) + viscous_forces(x, average_.velocities(v, conditions.fixed)) +
-                         conditions.external;
+  const std::vector<char>& fixed = now.conditions.fixed;
+  const NodalVectors f =
+      forces(moving_.built.model, now.x) + forces_beside(now, average_.velocities(v, fixed)) + now.conditions.external;
   for (Eigen::Index i = 0; i < v.size(); ++i)
-    if (!conditions.fixed[i]) v.data()[i] += behind_ * (f.data()[i] * per_mass_.data()[i] - damping_ * v.data()[i]);
-  if (contact_) v = contact_->stopped(conditions.fixed, v);
+    if (!fixed[i]) v.data()[i] += behind_ * (f.data()[i] * per_mass_.data()[i] - damping_ * v.data()[i]);
+  if (contact_) v = contact_->stopped(fixed, v);
   carry(moving_.network().cells.carried, v);
   return v;
 }
 
-NodalVectors MotionRecorder::viscous_forces(const NodalVectors& x, const NodalVectors& v) const {
-  NodalVectors f = NodalVectors::Zero(x.rows(), 3);
-  if (viscosity_.acts()) viscosity_.add_forces(moving_.network(), x, v, f);
+/// Of dashpots and branches.
+NodalVectors MotionRecorder::forces_beside(const MotionSample& now, const NodalVectors& v) const {
+  NodalVectors f = NodalVectors::Zero(now.x.rows(), 3);
+  if (viscosity_.acts()) viscosity_.add_forces(moving_.network(), now.x, v, f);
+  if (now.relaxing.size() > 0) f += now.relaxing;
   return f;
 }
 
-Field MotionRecorder::field_at(const NodalVectors& x, const NodalVectors& v,
-                               const BoundaryConditions& conditions) const {
+Field MotionRecorder::field_at(const MotionSample& now, const NodalVectors& v) const {
   const MassSpringModel& model = moving_.built.model;
   const PreparedCase& prepared = moving_.prepared;
   Equilibrium state;
-  state.displacement = x - model.network.X;
-  state.support = support_forces(model, x, conditions);
-  const NodalVectors viscous = viscous_forces(x, v);
-  for (Eigen::Index i = 0; i < viscous.size(); ++i)
-    if (conditions.fixed[i]) state.support.data()[i] -= viscous.data()[i];
+  state.displacement = now.x - model.network.X;
+  state.support = support_forces(model, now.x, now.conditions);
+  const NodalVectors beside = forces_beside(now, v);
+  for (Eigen::Index i = 0; i < beside.size(); ++i)
+    if (now.conditions.fixed[i]) state.support.data()[i] -= beside.data()[i];
   const Experiment& e = prepared.experiment;
   Field field = to_field(state, moving_.lattice.mesh, moving_.built.embedding, model.network, prepared.loads,
-                         conditions, e.model_kinematics());
+                         now.conditions, e.model_kinematics());
   if (e.body.is_voxels()) field.reactions = about_true_patches(prepared, *moving_.lattice.mesh, field.reactions);
   return field;
 }

@@ -37,14 +37,12 @@ class MotionRecorder {
   /// Keeps references to all but the options.
   MotionRecorder(const MovingNetwork& moving, const MotionOptions& options, MotionRecord& record);
 
-  /// The state of this time, as of DynamicsOptions::after_step.
-  void operator()(double time, const NodalVectors& x, const NodalVectors& of_step,
-                  const BoundaryConditions& conditions);
+  void operator()(const MotionSample& now);
 
  private:
-  NodalVectors at_positions(const NodalVectors& x, NodalVectors v, const BoundaryConditions& conditions) const;
-  NodalVectors viscous_forces(const NodalVectors& x, const NodalVectors& v) const;
-  Field field_at(const NodalVectors& x, const NodalVectors& v, const BoundaryConditions& conditions) const;
+  NodalVectors at_positions(const MotionSample& now) const;
+  NodalVectors forces_beside(const MotionSample& now, const NodalVectors& v) const;
+  Field field_at(const MotionSample& now, const NodalVectors& v) const;
   void add_momenta(const NodalVectors& x, const NodalVectors& s);
   void add_probes(const NodalVectors& u, const Field& field);
   void add(const std::string& name, const char* unit, double value);

@@ -56,11 +56,13 @@ fem::Request motion_request(const PreparedCase& prepared, const IsotropicMateria
   const Experiment& e = prepared.experiment;
   const MotionChoice& motion = *e.dynamics;
   fem::Request request = fem::request_of(e, material);
+  request.material = material;
   request.loads = prepared.loads;
   request.points = probe_points(e);
   request.cost = false;
-  request.motion = fem::MotionRequest{motion.duration, motion.damping, motion.course,    motion.released,
-                                      motion.velocity, motion.spin,    motion.viscosity, e.reference.energy_momentum};
+  request.motion = fem::MotionRequest{motion.duration,  motion.damping,  motion.course,
+                                      motion.released,  motion.velocity, motion.spin,
+                                      motion.viscosity, e.relaxation,    e.reference.energy_momentum};
   const Cells fine =
       e.reference.cells[0] > 0 ? e.reference.cells : divisible_cells(e.body.size, motion_elements, fewest_across(e));
   for (int g = 0; g < 3; ++g) {
@@ -117,7 +119,7 @@ void measure_limits(const PreparedCase& prepared, const ProbesOnGrids& probes, M
   const auto measured = [&](const NodalVectors& field) {
     HistoryRecord h = history_of(prepared.experiment, probes.times, field);
     h.probe = out.history.probe;
-    return measured_in_time(*prepared.experiment.dynamics, h);
+    return measured_in_time(prepared.experiment, h);
   };
   std::map<std::string, std::vector<double>> values;
   for (const NodalVectors& field : probes.fields)

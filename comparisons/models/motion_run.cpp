@@ -33,7 +33,7 @@ void measure_bounce(const PlaneContact& contact, HistoryRecord& history) {
 Equilibrium run_motion(const MovingNetwork& moving, const LoadPath& path, MotionRecord& record) {
   const MotionChoice& motion = moving.motion();
   const MassSpringModel& model = moving.built.model;
-  const MotionSteps steps = steps_of(motion, model, moving.material);
+  const MotionSteps steps = steps_of(moving.prepared.experiment, model, moving.material);
   const double dt = *steps.options.time_step;
   record.history.time_step = dt;
   record.history.integrator = name_of(steps.options.integrator);
@@ -48,9 +48,9 @@ Equilibrium run_motion(const MovingNetwork& moving, const LoadPath& path, Motion
   options.stride = steps.stride;
   options.velocity = rigid_velocity(motion, model.network, moving.masses());
   MotionRecorder recorder(moving, options, record);
-  options.after_step = [&](double time, const NodalVectors& x, const NodalVectors& v, const BoundaryConditions& bc) {
-    recorder(time, x, v, bc);
-    progress::detail(fmt::format("{:.3g} of {:.3g} s", time, motion.duration));
+  options.after_step = [&](const MotionSample& now) {
+    recorder(now);
+    progress::detail(fmt::format("{:.3g} of {:.3g} s", now.time, motion.duration));
   };
   LoadPath in_time = path;
   if (motion.released) {

@@ -30,8 +30,9 @@ Integrator integrator_of(const MotionChoice& motion, bool only_explicit) {
 }
 
 /// checked_time_step(), which says where the case has the option that it refuses.
-double step_of(const MotionChoice& motion, const MassSpringModel& model, const IsotropicMaterial& material,
+double step_of(const Experiment& experiment, const MassSpringModel& model, const IsotropicMaterial& material,
                const MotionOptions& options) {
+  const MotionChoice& motion = *experiment.dynamics;
   try {
     return checked_time_step(model, material.density, options);
   } catch (const MotionOptionError& e) {
@@ -50,24 +51,40 @@ double wanted_step(const MotionChoice& motion) {
 
 /// Whether "auto" takes large steps.
 /// @param own the model's own explicit step [s]
-bool large_steps_pay(const MotionChoice& motion, const MassSpringModel& model, double own, const Viscosity& viscosity) {
-  const double ratio =
-      LatticeMotion::suits(model, {.viscosity = viscosity}) ? worthwhile_ratio_beside_kernels : worthwhile_ratio;
+bool large_steps_pay(const MotionChoice& motion, const MassSpringModel& model, double own,
+                     const MotionOptions& options) {
+  const double ratio = LatticeMotion::suits(model, {.viscosity = options.viscosity}) ? worthwhile_ratio_beside_kernels
+                                                                                     : worthwhile_ratio;
   return can(model, Capability::energy_momentum) && wanted_step(motion) > ratio * (own / share_of_bound);
+}
+
+/// Branches of a model.
+/// @throws InputError at [material.relaxation] if it has none.
+RelaxingCells relaxing_of(const Experiment& experiment, const MassSpringModel& model,
+                          const IsotropicMaterial& material) {
+  if (const std::string why = experiment.relaxation.acts() ? lacks(model, Capability::relaxation) : ""; !why.empty())
+    throw InputError(
+        experiment.relaxation_where,
+        fmt::format("material.relaxation: does not suit a model of the case in motion: {} (allowed for it: "
+                    "none; with it: models of cells, as hybmss_avg)",
+                    why));
+  return RelaxingCells::of(model, material, experiment.relaxation);
 }
 
 }  // namespace
 
-MotionSteps steps_of(const MotionChoice& motion, const MassSpringModel& model, const IsotropicMaterial& material) {
+MotionSteps steps_of(const Experiment& experiment, const MassSpringModel& model, const IsotropicMaterial& material) {
+  const MotionChoice& motion = *experiment.dynamics;
   const bool only_explicit = motion.plane && (model.network.cells.cut() || motion.plane->friction > 0),
              automatic = motion.integrator == "auto";
   MotionOptions options = {.integrator = integrator_of(motion, only_explicit),
                            .damping = motion.damping,
                            .viscosity = Viscosity::of(model, material, motion.viscosity),
+                           .relaxation = relaxing_of(experiment, model, material),
                            .mass_consistency = motion.mass_consistency};
   if (!automatic) options.time_step = motion.time_step;
-  double size = step_of(motion, model, material, options);
-  if (automatic && !only_explicit && large_steps_pay(motion, model, size, options.viscosity)) {
+  double size = step_of(experiment, model, material, options);
+  if (automatic && !only_explicit && large_steps_pay(motion, model, size, options)) {
     options.integrator = Integrator::energy_momentum;
     size = wanted_step(motion);
   } else if (automatic) {

@@ -13,11 +13,11 @@ struct MotionSteps {
 };
 
 /// Those of a model, checked before anything is run.
-/// @param motion the choice of the case
+/// @param experiment a case with [dynamics]
 /// @param model a model of the case
 /// @param material its material
 /// @return the integrator, which "auto" leaves open, and its steps
-/// @throws InputError at the key of [dynamics] that does not suit the model, or of too many steps.
-MotionSteps steps_of(const MotionChoice& motion, const MassSpringModel& model, const IsotropicMaterial& material);
+/// @throws InputError at the key of [dynamics] or [material] that does not suit the model, or of too many steps.
+MotionSteps steps_of(const Experiment& experiment, const MassSpringModel& model, const IsotropicMaterial& material);
 
 }  // namespace springproof

@@ -123,7 +123,7 @@ int solve_model(const PreparedCase& prepared, std::size_t l, std::size_t number,
   const std::string title = fmt::format("{}, nu = {}, {} cells", e.models[number].label, material.poisson_ratio,
                                         cells_text(lattice.cells, " x "));
   try {
-    const std::vector<ModelSample> samples = solve_samples(prepared, lattice, number, material, tolerance);
+    const std::vector<ModelSample> samples = solve_samples(prepared, lattice, number, e.at_rest(material), tolerance);
     for (const ModelSample& sample : samples) print(title, sample, e.measures);
     if (is_first()) keeper.keep(name_of_samples(l, {number}), json_of(samples));
     return all_solved;

@@ -39,7 +39,7 @@ void add_motion(PartRun& run, std::size_t lattice, const std::string& model, Fie
     motion.history.probe = run.in_time->history.probe;  // the same component
     for (const MotionMeasure& m : motion_measures())
       if (m.of_probe) motion.history.measured.erase(m.name);
-    motion.history.measured.merge(measured_in_time(*run.experiment().dynamics, motion.history));
+    motion.history.measured.merge(measured_in_time(run.experiment(), motion.history));
   }
   run.part.histories.push_back(std::move(motion.history));
   std::vector<std::pair<double, std::string>> series;

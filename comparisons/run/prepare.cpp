@@ -155,7 +155,7 @@ void try_model(const PreparedCase& prepared, const Lattice& lattice, std::size_t
   const auto [model, embedding] = build_chosen(prepared, lattice, number, experiment.materials.front());
   if (experiment.models[number].in_motion)
     for (const IsotropicMaterial& material : experiment.materials)  // refuses unsafe ones
-      steps_of(*experiment.dynamics, build_chosen(prepared, lattice, number, material).model, material);
+      steps_of(experiment, build_chosen(prepared, lattice, number, material).model, material);
   if (parameters.row.topology == Topology::cells && !*parameters.cut) return;
   const BoundaryConditions bc =
       transfer(prepared.loads, mesh, embedding, model.network, 1000, experiment.model_kinematics());

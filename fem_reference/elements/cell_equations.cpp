@@ -316,6 +316,64 @@ void add_viscosity(const CellLaw& law, const CellShape& shape, const Eigen::Matr
   tangent->uu += viscosity * per_rate * lambda * (traces.transpose() * (weights * traces));
 }
 
+namespace {
+
+// F in the middle of a step, and the change of the deviatoric strain over it, at all quadrature points.
+struct ShearOfStep {
+  std::vector<Matrix3d> F, change;
+
+  ShearOfStep(const CellLaw& law, const CellShape& shape, const Eigen::MatrixXd& before,
+              const Eigen::MatrixXd& middle) {
+    const auto h = gradients_of(shape, middle), half = gradients_of(shape, middle - before);
+    for (int q = 0; q < shape.points(); ++q) {
+      F.push_back(Matrix3d::Identity());
+      if (law.law) F[q] += h.middleRows<3>(3 * q).transpose();
+      const Matrix3d product = F[q].transpose() * half.middleRows<3>(3 * q).transpose();
+      change.push_back(product + product.transpose());  // exact: strain is quadratic
+      change[q].diagonal().array() -= change[q].trace() / 3;
+    }
+  }
+};
+
+}  // namespace
+
+void add_relaxation(const CellLaw& law, const CellShape& shape, const Eigen::MatrixXd& before, const Eigen::MatrixXd& u,
+                    const std::vector<RelaxingStep>& branches, const Overstrains& overstrains, CellVector& residual,
+                    CellTangent* tangent) {
+  const int n = shape.nodes(), points = shape.points();
+  const ShearOfStep step(law, shape, before, u);
+  PointTensors stress(3 * points, 3);
+  for (int q = 0; q < points; ++q) {
+    Matrix3d Q = Matrix3d::Zero();
+    for (std::size_t i = 0; i < branches.size(); ++i)
+      Q += branches[i].share * branches[i].over.mean(overstrains[branches.size() * q + i], step.change[q]);
+    stress.middleRows<3>(3 * q) = 2 * law.mu * shape.weights[q] * Q * step.F[q].transpose();
+  }
+  add_forces(shape, stress, residual.u);
+  if (!tangent) return;
+
+  Matrix6 D = (Vector6() << 1, 1, 1, 0.5, 0.5, 0.5).finished().asDiagonal();
+  D.topLeftCorner<3, 3>().array() -= 1. / 3;
+  double modulus = 0;  // strain changes twice as much over the step as to its middle
+  for (const RelaxingStep& branch : branches) modulus += 4 * law.mu * branch.share * branch.over.psi;
+  Eigen::MatrixXd B(6 * points, 3 * n), DB(6 * points, 3 * n);
+  for (int q = 0; q < points; ++q) {
+    B.middleRows<6>(6 * q) = strain_matrix(step.F[q], shape.gradients.middleRows<3>(3 * q));
+    DB.middleRows<6>(6 * q) = modulus * shape.weights[q] * D * B.middleRows<6>(6 * q);
+  }
+  tangent->uu += B.transpose() * DB;
+}
+
+void advance(const CellLaw& law, const CellShape& shape, const Eigen::MatrixXd& before, const Eigen::MatrixXd& u,
+             const std::vector<RelaxingStep>& branches, Overstrains& overstrains) {
+  const ShearOfStep step(law, shape, before, u);
+  for (int q = 0; q < shape.points(); ++q)
+    for (std::size_t i = 0; i < branches.size(); ++i) {
+      Matrix3d& Q = overstrains[branches.size() * q + i];
+      Q = branches[i].over.end(Q, step.change[q]).eval();
+    }
+}
+
 CellMatrix cell_stiffness(const CellLaw& law, const CellShape& shape, const Eigen::MatrixXd* u) {
   const int n = shape.nodes(), points = shape.points();
   // One column per point: the gradients of all shape functions, weighted so that X X^T integrates their products.

@@ -3,9 +3,11 @@
 
 #include <Eigen/Dense>
 #include <optional>
+#include <vector>
 
 #include "fem_reference/elements/element.h"
 #include "fem_reference/elements/laws.h"
+#include "problem/relaxation.h"
 
 namespace springproof::fem {
 
@@ -66,6 +68,27 @@ double cell_energy(const CellLaw& law, const CellShape& shape, const CellVector&
 /// depends by the factor `per_rate` [1/s] is added, for F as it is.
 void add_viscosity(const CellLaw& law, const CellShape& shape, const Eigen::MatrixXd& u, const Eigen::MatrixXd& rate,
                    double viscosity, double per_rate, CellVector& residual, CellTangent* tangent);
+
+/// A branch that relaxes, over a step (problem/relaxation.h).
+struct RelaxingStep {
+  double share;  ///< of its shear modulus in the long-time one
+  BranchStep over;
+};
+
+/// Overstrains of the branches at the quadrature points of a cell, point by point.
+using Overstrains = std::vector<Eigen::Matrix3d>;
+
+/// Branches: adds to the residual the stress 2 mu share Q (second Piola-Kirchhoff), Q the mean overstrain of a step
+/// from `before` whose middle is u, with the middle's F: its work is stored or dissipated. `tangent`, if not null: its
+/// derivative to the middle is added, for F as it is.
+/// @param before, u displacements [m], nodes x 3
+void add_relaxation(const CellLaw& law, const CellShape& shape, const Eigen::MatrixXd& before, const Eigen::MatrixXd& u,
+                    const std::vector<RelaxingStep>& branches, const Overstrains& overstrains, CellVector& residual,
+                    CellTangent* tangent);
+
+/// Makes the step from `before` whose middle is u.
+void advance(const CellLaw& law, const CellShape& shape, const Eigen::MatrixXd& before, const Eigen::MatrixXd& u,
+             const std::vector<RelaxingStep>& branches, Overstrains& overstrains);
 
 /// The small-strain stiffness with gradients in the configuration deformed by u (nullptr: undeformed), integrated over
 /// the rest volume: the matrix of the multigrid.  Of lambda the mixed form has the pointwise part alone.

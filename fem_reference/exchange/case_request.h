@@ -6,8 +6,8 @@
 
 namespace springproof::fem {
 
-/// Body, material, law and loads of the case; the caller adds grids and points.  The tolerance is that of references,
-/// 1e-8.
+/// Body, solid of equilibria (Experiment::at_rest()), law and loads of the case; the caller adds grids and points.  The
+/// tolerance is that of references, 1e-8.
 /// @throws InputError if the body's script does not exist (find_geo).
 Request request_of(const Experiment& experiment, const IsotropicMaterial& material);
 

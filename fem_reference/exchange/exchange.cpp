@@ -24,12 +24,14 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(AttachedMass, name, on, at, mass, weighs)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PatchReaction, patch, force, torque)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunTimes, set_up, solve)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Course, ramp, pulse, frequency)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RelaxationBranch, share, time)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Relaxation, branches)
 
 namespace fem {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Discretisation, cells, element, grading, mesh, refinements, steps, vtu)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MotionRequest, duration, damping, course, released, velocity, spin, viscosity,
-                                   energy_momentum)
+                                   relaxation, energy_momentum)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Solution, grid, ok, message, form, law, displacement, stress, reactions,
                                    volume_change, volume_change_first_order, min_jacobian, degrees_of_freedom, unknowns,
                                    cells, cells_per_process, iterations, residual, seconds, times, memory_MiB,

@@ -13,6 +13,7 @@
 #include "problem/loads.h"
 #include "problem/material.h"
 #include "problem/patch_rule.h"
+#include "problem/relaxation.h"
 #include "problem/system/run_cost.h"
 
 namespace springproof::fem {
@@ -41,6 +42,7 @@ struct MotionRequest {
   Vec3 spin = Vec3::Zero();      ///< and about its centre of mass [rad/s]
   double viscosity = 0;          ///< time of retardation of a Kelvin-Voigt solid: to the stress of a strain E it adds
                                  ///< `viscosity` times Hooke's stress of dE/dt [s]
+  Relaxation relaxation = {};    ///< in shear, beside the material's long-time moduli
   bool energy_momentum = false;  ///< steps do the work of the law's stress exactly; false: the midpoint rule
 };
 

@@ -64,7 +64,11 @@ void check_damping(const MassSpringModel& model, double density, double dt, cons
 double checked_time_step(const MassSpringModel& model, double density, const MotionOptions& options) {
   check_mass(model, options);
   check_integrator(model, options);
-  const double safe = safe_time_step(model, density, options.lagged, options.mass_consistency),
+  if (const std::string why = options.relaxation.acts() ? lacks(model, Capability::relaxation) : ""; !why.empty())
+    throw MotionOptionError("relaxation", "does not suit this model: " + why);
+  const double safe = relaxing_time_step(model, density, options.relaxation,
+                                         safe_time_step(model, density, options.lagged, options.mass_consistency),
+                                         options.mass_consistency),
                bound = viscous_time_step(model, density, options.viscosity, safe, options.mass_consistency);
   const bool implicit = options.integrator != Integrator::explicit_euler;
   const double dt = options.time_step.value_or(implicit ? implicit_ratio * safe : share_of_bound * bound);

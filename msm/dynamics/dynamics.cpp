@@ -69,6 +69,7 @@ class MotionUnderLoads {
     if (options.start.size() > 0 || options.velocity.size() > 0) {
       const NodalVectors x = options.start.size() > 0 ? options.start : model.network.X;
       motion_->set_state(x, velocity_before(model, density, x, bc_, options));
+      motion_->relax();
     }
     motion_->move_supports();
     if (options.contact) options.contact->observe(0, motion_->velocities());
@@ -109,7 +110,8 @@ class MotionUnderLoads {
     result_.steps += steps;
     if (options_.contact) touch();
     if (options_.after_step && (result_.steps % options_.stride == 0 || result_.steps == last))
-      options_.after_step(result_.steps * dt_, motion_->positions(), motion_->velocities(), bc_);
+      options_.after_step(
+          {result_.steps * dt_, motion_->positions(), motion_->velocities(), bc_, motion_->relaxing_forces()});
     return look(norms);
   }
 
@@ -149,6 +151,9 @@ class MotionUnderLoads {
                                   state.residual);
     state.displacement = x - model_.network.X;
     state.support = support_forces(model_, x, bc_);
+    const NodalVectors relaxing = motion_->relaxing_forces();
+    for (Eigen::Index i = 0; i < relaxing.size(); ++i)
+      if (bc_.fixed[i]) state.support.data()[i] -= relaxing.data()[i];
     state.unknowns = std::count(bc_.fixed.begin(), bc_.fixed.end(), false);
     state.solver = fmt::format("{}, {} steps of {:.3g} s, {}", name_of(options_.integrator), result_.steps, dt_,
                                motion_->description());

@@ -12,6 +12,15 @@
 
 namespace springproof {
 
+/// A motion at a time.
+struct MotionSample {
+  double time;                           ///< [s]
+  const NodalVectors& x;                 ///< positions [m]
+  const NodalVectors& v;                 ///< velocities of the step [m/s]
+  const BoundaryConditions& conditions;  ///< then
+  const NodalVectors& relaxing;          ///< Motion::relaxing_forces() [N]
+};
+
 /// How to move a model in time.
 struct DynamicsOptions : MotionOptions {
   NodalVectors start = {};     ///< positions at t = 0 [m]; empty: X
@@ -20,11 +29,8 @@ struct DynamicsOptions : MotionOptions {
   Course course = {};          ///< of the loads and supports
   double duration = 10;        ///< [s]
   double rest_tolerance = 0;   ///< stop when relative unbalanced force and damping dt |v|/|u| are below; 0 = never
-  /// Called after every `stride` steps and after the last, with the time, the positions [m], the velocity of the step
-  /// [m/s] and the boundary conditions then.
-  std::function<void(double time, const NodalVectors& x, const NodalVectors& v, const BoundaryConditions& conditions)>
-      after_step = {};
-  long stride = 1;  ///< steps between two calls of after_step
+  std::function<void(const MotionSample&)> after_step = {};  ///< called after every `stride` steps and after the last
+  long stride = 1;                                           ///< steps between two calls of after_step
 };
 
 /// How a motion ended.

@@ -66,6 +66,7 @@ ImplicitMotion::ImplicitMotion(const MassSpringModel& model, double density, con
       safe_step_(safe_time_step(model, density)),
       mass_(masses(model.network, density)),
       spacing_(std::cbrt(model.network.volume.mean())),
+      overstrains_(model.network, options.relaxation),
       x_(model.network.X),
       v_(NodalVectors::Zero(x_.rows(), 3)) {
   if (options.integrator == Integrator::energy_momentum) secant_ = std::make_unique<EnergyMomentum>(model);
@@ -90,19 +91,35 @@ void ImplicitMotion::set_state(const NodalVectors& x, const NodalVectors& v) {
   carry(model_.network.cells.carried, v_);
 }
 
-ImplicitMotion::Formula ImplicitMotion::formula() const {
-  const double dt = dt_, retardation = options_.viscosity.time();
-  if (options_.integrator == Integrator::energy_momentum)
-    return {2 / (dt * dt), 1 / dt, 0.5 + retardation / dt, x_ + dt * v_};
-  return {1 / (dt * dt), 1 / dt, 1 + retardation / dt, x_ + dt * v_};
+NodalVectors ImplicitMotion::relaxing_forces() const {
+  if (!overstrains_.acts()) return {};
+  NodalVectors f = NodalVectors::Zero(x_.rows(), 3);
+  overstrains_.add_forces(x_, 0, f);
+  return f;
 }
 
-/// Internal, viscous and external.  Over an energy-momentum step dashpots are those of its middle, where they have no
-/// torque, and take the energy f . (x1 - x0) <= 0.
+ImplicitMotion::Formula ImplicitMotion::formula() const {
+  const double dt = dt_, dashpots = options_.viscosity.time() / dt;
+  double of_mean = 0, at_end = 0;  // branches
+  for (const auto& [share, time] : options_.relaxation.relaxation.branches) {
+    of_mean += share * BranchStep::of(dt / time).psi;
+    at_end += share * BranchStep::of(dt / time).phi;
+  }
+  if (options_.integrator == Integrator::energy_momentum)
+    return {2 / (dt * dt), 1 / dt, 0.5 + of_mean + dashpots, x_ + dt * v_};
+  return {1 / (dt * dt), 1 / dt, 1 + at_end + dashpots, x_ + dt * v_};
+}
+
+/// Internal, of branches, viscous and external.  Over an energy-momentum step dashpots are those of its middle, where
+/// they have no torque, and take the energy f . (x1 - x0) <= 0.
 NodalVectors ImplicitMotion::force(const Formula& step, NodalVectors x1) const {
   carry(model_.network.cells.carried, x1);
   NodalVectors f = secant_ ? NodalVectors(secant_->forces(x_, x1) + (external_before_ + conditions_.external) / 2)
                            : NodalVectors(springproof::forces(model_, x1) + conditions_.external);
+  if (secant_)
+    overstrains_.add_mean_forces(x_, x1, dt_, f);
+  else
+    overstrains_.add_forces(x1, dt_, f);
   if (options_.viscosity.acts())
     options_.viscosity.add_forces(model_.network, secant_ ? NodalVectors((x_ + x1) / 2) : x1, step.rate * (x1 - x_), f);
   return f;
@@ -341,6 +358,7 @@ bool ImplicitMotion::solve_step() {
     for (Eigen::Index i = 0; i < v1.size(); ++i)
       if (!conditions_.fixed[i]) v1.data()[i] = 2 * v1.data()[i] - v_.data()[i];
   if (plane_) land(now, x1, b, v1);
+  overstrains_.advance(x1, dt_);
   x_ = x1;
   v_ = v1;
   external_before_ = conditions_.external;

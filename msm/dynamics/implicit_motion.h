@@ -27,8 +27,9 @@ class ImplicitMotion : public Motion {
  public:
   /// @param model a model
   /// @param density [kg/m^3]
-  /// @param options with a time step and an integrator that takes large ones, of which damping, viscosity and contact
-  ///   are read; nodes may end a step on the plane, without friction, which counts the impulses
+  /// @param options with a time step and an integrator that takes large ones, of which damping, viscosity, relaxation
+  /// and
+  ///   contact are read; nodes may end a step on the plane, without friction, which counts the impulses
   /// @throws std::invalid_argument if the model has no energy-momentum forces and these are asked for.
   ImplicitMotion(const MassSpringModel& model, double density, const MotionOptions& options);
 
@@ -37,6 +38,8 @@ class ImplicitMotion : public Motion {
   void set_conditions(const BoundaryConditions& conditions) override;
   void move_supports() override;
   void set_state(const NodalVectors& x, const NodalVectors& v) override;
+  void relax() override { overstrains_.relax(x_); }
+  NodalVectors relaxing_forces() const override;
 
   /// @return the norms of internal and external forces over the last step; NaN if it has none, with the reason
   ///   in failure().
@@ -84,6 +87,7 @@ class ImplicitMotion : public Motion {
   Eigen::VectorXd mass_;
   double spacing_;  ///< of the nodes [m]
   std::unique_ptr<EnergyMomentum> secant_;
+  Overstrains overstrains_;  ///< at x_
   BoundaryConditions conditions_;
   NodalVectors external_before_;
   NodalVectors x_, v_;

@@ -25,13 +25,13 @@ bool LatticeMotion::suits(const MassSpringModel& model, const MotionOptions& opt
   const bool of_cells = !viscosity.along_springs() && viscosity.cells().shift == 0 && !model.network.cells.cut() &&
                         !model.network.cells.empty();
   const bool averages = !viscosity.acts() && is_box_of_full_cells(model.network);
-  return !options.lagged && is_lattice_of_springs(model) && (!viscosity.acts() || of_cells) &&
-         (options.mass_consistency == 0 || averages);
+  return !options.lagged && !options.relaxation.acts() && is_lattice_of_springs(model) &&
+         (!viscosity.acts() || of_cells) && (options.mass_consistency == 0 || averages);
 }
 
 bool LatticeMotion::suits_gpu(const MassSpringModel& model, const MotionOptions& options) {
   return is_lattice_of_springs(model) && can(model, Capability::gpu) && !options.viscosity.acts() &&
-         options.mass_consistency == 0;
+         !options.relaxation.acts() && options.mass_consistency == 0;
 }
 
 MotionOptions on_chosen_device(const MassSpringModel& model, MotionOptions options) {
@@ -46,11 +46,11 @@ std::unique_ptr<LatticeMotion> lattice_motion(const MassSpringModel& model, doub
         "the lattice kernel is for cubic lattices of springs, with or without volume and hourglass correction or "
         "momentum dispersion, and of averaged springs in full cells; viscosity is that of their cells; boxes have a "
         "share of consistent mass, without "
-        "viscosity");
+        "viscosity; nothing relaxes");
   if (options.device == Device::processor) return lattice_on_processor(model, density, options);
   if (!LatticeMotion::suits_gpu(model, options))
     throw std::invalid_argument(
-        "on a GPU there is no momentum dispersion, viscosity or share of consistent mass of lattices");
+        "on a GPU there is no momentum dispersion, viscosity, relaxation or share of consistent mass of lattices");
   return lattice_on_gpu(model, density, options);
 }
 

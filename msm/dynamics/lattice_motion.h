@@ -14,9 +14,9 @@ class LatticeMotion : public Motion {
   /// Whether there is a kernel for the model: a cubic lattice, whole or with cells missing, of springs with or without
   /// volume and hourglass correction or momentum dispersion that does not lag; or of averaged springs in full cells.
   /// Viscosity: of cells; there is none along springs.  A share of consistent mass: of boxes of full cells, undamped or
-  /// damped in proportion to their mass.
+  /// damped in proportion to their mass.  No branches that relax.
   static bool suits(const MassSpringModel& model, const MotionOptions& options = {});
-  /// The same for a GPU: without momentum dispersion, viscosity and shares of consistent mass.
+  /// The same for a GPU: without momentum dispersion, viscosity, relaxation and shares of consistent mass.
   static bool suits_gpu(const MassSpringModel& model, const MotionOptions& options);
 
   /// Of the following steps.

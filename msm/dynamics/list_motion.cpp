@@ -109,6 +109,19 @@ void ListMotion<Real>::set_state(const NodalVectors& x, const NodalVectors& v) {
     }
 }
 
+template <class Real>
+void ListMotion<Real>::relax() {
+  if (forces_->relaxing()) forces_->relax(x_.data());
+}
+
+template <class Real>
+NodalVectors ListMotion<Real>::relaxing_forces() const {
+  if (!forces_->relaxing()) return {};
+  std::vector<Padded<Real>> f(order_.size(), Padded<Real>{});
+  forces_->add_relaxing(x_.data(), f.data());
+  return in_network_order(f);
+}
+
 /// Moves the nodes begin <= n < end, whose forces are complete, and `apart` in f_.  The total force on fixed unknowns
 /// is set to 0 first, so that they stay.
 template <class Real>
@@ -236,9 +249,12 @@ std::unique_ptr<BlockForces<Real>> block_forces(const MassSpringModel& model, co
   const std::vector<Anchor>& anchors = model.network.anchors;  // one support mass for all axes of a node
   if (std::any_of(anchors.begin(), anchors.end(), [](const Anchor& a) { return a.axes != 7; })) return nullptr;
   const AveragedSprings& dashpots = options.viscosity.cells();
-  if (can(model, Capability::cell_kernels) && !options.viscosity.along_springs() && dashpots.shift == 0)
-    return std::make_unique<CellForces<Real>>(model, options.instructions, dashpots, options.viscosity.time());
-  if (can(model, Capability::list_kernels) && !options.viscosity.acts())
+  if (can(model, Capability::cell_kernels) && !options.viscosity.along_springs() && dashpots.shift == 0) {
+    auto cells = std::make_unique<CellForces<Real>>(model, options.instructions, dashpots, options.viscosity.time());
+    cells->set_branches(options.relaxation.relaxation, options.relaxation.cells, options.time_step.value());
+    return cells;
+  }
+  if (can(model, Capability::list_kernels) && !options.viscosity.acts() && !options.relaxation.acts())
     return std::make_unique<ListForces<Real>>(model, options.instructions);
   return nullptr;
 }

@@ -25,6 +25,8 @@ class ListMotion : public Motion {
   void set_conditions(const BoundaryConditions& conditions) override;
   void move_supports() override;
   void set_state(const NodalVectors& x, const NodalVectors& v) override;
+  void relax() override;
+  NodalVectors relaxing_forces() const override;
   ForceNorms advance(long steps) override;
   NodalVectors positions() const override;
   NodalVectors velocities() const override;

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "msm/dynamics/terms/relaxing_cells.h"
 #include "msm/dynamics/terms/viscosity.h"
 #include "msm/embedding/boundary.h"
 #include "msm/kernels/instruction_set.h"
@@ -36,6 +37,7 @@ struct MotionOptions {
   double damping = 0;        ///< mass-proportional, force -damping * m * v [1/s]; non-conservative momentum dispersion
                              ///< needs some, or it flutters
   Viscosity viscosity = {};  ///< by kernels that of cells
+  RelaxingCells relaxation = {};    ///< branches of cells, relaxed at the start
   double mass_consistency = 0;      ///< share of consistent mass of explicit steps, 0 to 1: MassAverage.  With it every
                                     ///< velocity v of a step, of Motion too, is the momentum over the lumped mass
   bool lagged = false;              ///< dispersion uses the J of the previous step; Kot & Nagahashi (2015), sec. 7
@@ -67,6 +69,10 @@ class Motion {
   /// @param x positions [m], n x 3
   /// @param v velocities [m/s], n x 3
   virtual void set_state(const NodalVectors& x, const NodalVectors& v) = 0;
+  /// Relaxes all branches (MotionOptions::relaxation) in the present state.
+  virtual void relax() {}
+  /// @return forces of the branches [N], n x 3; empty: there are none
+  virtual NodalVectors relaxing_forces() const { return {}; }
   /// Makes steps.
   /// @param steps how many
   /// @return the norms of forces at the beginning of the last step

@@ -13,6 +13,7 @@ PlainMotion::PlainMotion(const MassSpringModel& model, double density, const Mot
       dt_(options.time_step.value()),
       damping_(options.damping),
       viscosity_(options.viscosity),
+      overstrains_(model.network, options.relaxation),
       average_(mass_average(model.network, density, options)),
       x_(model.network.X),
       v_(NodalVectors::Zero(x_.rows(), 3)),
@@ -30,6 +31,13 @@ void PlainMotion::set_state(const NodalVectors& x, const NodalVectors& v) {
   carry(model_.network.cells.carried, v_);
 }
 
+NodalVectors PlainMotion::relaxing_forces() const {
+  if (!overstrains_.acts()) return {};
+  NodalVectors f = NodalVectors::Zero(x_.rows(), 3);
+  overstrains_.add_forces(x_, dt_, f);
+  return f;
+}
+
 ForceNorms PlainMotion::advance(long steps) {
   ForceNorms norms;
   for (; steps > 0; --steps) norms = step();
@@ -39,6 +47,10 @@ ForceNorms PlainMotion::advance(long steps) {
 ForceNorms PlainMotion::step() {
   NodalVectors f = forces_at_x();
   if (viscosity_.acts()) viscosity_.add_forces(model_.network, x_, moving(), f);
+  if (overstrains_.acts()) {
+    overstrains_.add_forces(x_, dt_, f);
+    overstrains_.advance(x_, dt_);
+  }
   double unbalanced = 0, support = 0;
   for (Eigen::Index i = 0; i < x_.size(); ++i) {
     const double force = f.data()[i] + conditions_.external.data()[i];

@@ -11,12 +11,14 @@ class PlainMotion : public Motion {
  public:
   /// @param model a model
   /// @param density [kg/m^3]
-  /// @param options with a time step, of which damping, viscosity, mass_consistency and lagged are read
+  /// @param options with a time step, of which damping, viscosity, relaxation, mass_consistency and lagged are read
   PlainMotion(const MassSpringModel& model, double density, const MotionOptions& options);
 
   void set_conditions(const BoundaryConditions& conditions) override { conditions_ = conditions; }
   void move_supports() override;
   void set_state(const NodalVectors& x, const NodalVectors& v) override;
+  void relax() override { overstrains_.relax(x_); }
+  NodalVectors relaxing_forces() const override;
   ForceNorms advance(long steps) override;
   NodalVectors positions() const override { return x_; }
   NodalVectors velocities() const override { return v_; }
@@ -33,6 +35,7 @@ class PlainMotion : public Motion {
   Eigen::VectorXd J_;
   double dt_, damping_;
   Viscosity viscosity_;
+  Overstrains overstrains_;  ///< at the beginning of the last step
   MassAverage average_;
   NodalVectors x_, v_;
   NodalVectors of_supports_;  ///< velocities of moved unknowns [m/s], zero on free ones

@@ -361,6 +361,23 @@ double viscous_time_step(const MassSpringModel& model, double density, const Vis
   return 4 / (std::sqrt(rate * rate + 4 * frequency * frequency) + rate);
 }
 
+double relaxing_time_step(const MassSpringModel& model, double density, const RelaxingCells& relaxing, double elastic,
+                          double theta) {
+  if (!relaxing.acts()) return elastic;
+  AveragedSprings branches = relaxing.cells;
+  branches.shear_modulus *= relaxing.relaxation.instantaneous() - 1;
+  branches.lame_lambda = -2 * branches.shear_modulus / 3;  // no bulk modulus
+  if (!averaged_springs_of(model)) {
+    const double of_branches = safe_time_step({model.network, {branches}}, density, false, theta);
+    return 1 / std::sqrt(1 / (elastic * elastic) + 1 / (of_branches * of_branches));
+  }
+  MassSpringModel sudden = model;
+  AveragedSprings& own = *law_of<AveragedSprings>(sudden);
+  own.shear_modulus += branches.shear_modulus;
+  own.lame_lambda += branches.lame_lambda;
+  return safe_time_step(sudden, density, false, theta);
+}
+
 double dispersion_frequency_squared(const MassSpringModel& model, double density) {
   const MomentumDispersion* dispersion = dispersion_of(model);
   if (!dispersion) return 0;

@@ -1,6 +1,7 @@
 // Stable time step of explicit integration, from bounds on the frequencies of any network.
 #pragma once
 
+#include "msm/dynamics/terms/relaxing_cells.h"
 #include "msm/dynamics/terms/viscosity.h"
 #include "msm/laws/laws.h"
 
@@ -49,6 +50,16 @@ void soften_bonds(MassSpringModel& model, double density);
 /// @param theta share of consistent mass, 0 to 1
 double viscous_time_step(const MassSpringModel& model, double density, const Viscosity& viscosity, double elastic,
                          double theta = 0);
+
+/// Largest safe step [s] of explicit integration with branches: that of the moduli of a sudden strain, whatever their
+/// times.
+/// @param model a model
+/// @param density [kg/m^3]
+/// @param relaxing of the model
+/// @param elastic the step without branches, safe_time_step() [s]
+/// @param theta share of consistent mass, 0 to 1
+double relaxing_time_step(const MassSpringModel& model, double density, const RelaxingCells& relaxing, double elastic,
+                          double theta = 0);
 
 /// Bound on omega*^2 [1/s^2], the part of the squared frequencies that momentum dispersion adds; 0 if it adds none or
 /// reduces them.

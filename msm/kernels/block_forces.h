@@ -34,9 +34,9 @@ class BlockForces {
   /// The positions [m] that `x` of the functions below is counted from.
   virtual NodalVectors origin() const = 0;
 
-  /// f += forces of blocks begin <= b < end.  s: ListStep::s, from which dashpots have velocities.
-  virtual void add_blocks(long begin, long end, const Padded<Real>* x, const Padded<Real>* s,
-                          Padded<Real>* f) const = 0;
+  /// f += forces of blocks begin <= b < end, whose branches make a step.  s: ListStep::s, from which dashpots have
+  /// velocities.
+  virtual void add_blocks(long begin, long end, const Padded<Real>* x, const Padded<Real>* s, Padded<Real>* f) = 0;
   /// There are dashpots: the fourth number of x is velocity / s.
   virtual bool viscous() const { return false; }
 
@@ -45,6 +45,13 @@ class BlockForces {
   /// f += all internal forces, where coupled(); x and s as in add_blocks(), of carried nodes anything.
   /// @param lagged dispersion uses the J of the previous call
   virtual void add(const Padded<Real>*, const Padded<Real>*, Padded<Real>*, bool) {}
+
+  /// There are branches that relax.
+  virtual bool relaxing() const { return false; }
+  /// Relaxes them at x.
+  virtual void relax(const Padded<Real>*) {}
+  /// f += their forces at x, at the end of a step that they do not make.
+  virtual void add_relaxing(const Padded<Real>*, Padded<Real>*) {}
 };
 
 }  // namespace springproof

@@ -131,8 +131,7 @@ void CellForces<Real>::store_bonds(const Network& network) {
 }
 
 template <class Real>
-void CellForces<Real>::add_blocks(long begin, long end, const Padded<Real>* x, const Padded<Real>* s,
-                                  Padded<Real>* f) const {
+void CellForces<Real>::add_blocks(long begin, long end, const Padded<Real>* x, const Padded<Real>* s, Padded<Real>* f) {
   for (long first = begin, next; first < end; first = next) {
     for (next = first + 1; next < end && order_.material[next] == order_.material[first];) ++next;
     add_cells(first, next, x, s, f);
@@ -143,8 +142,7 @@ void CellForces<Real>::add_blocks(long begin, long end, const Padded<Real>* x, c
 
 /// Of blocks of one material.
 template <class Real>
-void CellForces<Real>::add_cells(long begin, long end, const Padded<Real>* x, const Padded<Real>* s,
-                                 Padded<Real>* f) const {
+void CellForces<Real>::add_cells(long begin, long end, const Padded<Real>* x, const Padded<Real>* s, Padded<Real>* f) {
   CellList<Real> list = list_;
   list.springs = constants_[order_.material[begin]].springs;
   list.dashpots = constants_[order_.material[begin]].dashpots;
@@ -152,7 +150,12 @@ void CellForces<Real>::add_cells(long begin, long end, const Padded<Real>* x, co
   list.corners = corners_.data() + 8 * kernels_->cell_list.cells * begin;
   list.numbers = numbers_.data() + cell_number::count * kernels_->cell_list.cells * begin;
   if (!forms_.empty()) list.forms = forms_.data() + numbers_of_form * kernels_->cell_list.cells * begin;
-  if (viscous_)
+  if (relaxing()) {
+    list.branch_count = static_cast<int>(branches_.size());
+    list.branches = branches_.data();
+    list.overstrains = overstrains_.data() + overstrain_count * kernels_->cell_list.cells * list.branch_count * begin;
+    kernels_->cell_list.relaxing_forces(list, x, viscous_ ? s : nullptr, f);
+  } else if (viscous_)
     kernels_->cell_list.viscous_forces(list, x, s, f);
   else
     kernels_->cell_list.forces(list, x, f);
@@ -214,6 +217,42 @@ void CellForces<Real>::add(const Padded<Real>* x, const Padded<Real>* s, Padded<
       for (const int by : c->by) f[by].v[d] += share;
       f[c->point].v[d] = 0;
     }
+}
+
+template <class Real>
+void CellForces<Real>::set_branches(const Relaxation& relaxation, const AveragedSprings& cells, double time_step) {
+  list_.relaxing = averaged_constants<Real>(cells, 1);
+  branches_.clear();
+  for (const auto& [share, time] : relaxation.branches) {
+    const BranchStep step = BranchStep::of(time_step / time);
+    branches_.push_back({static_cast<Real>(share), static_cast<Real>(step.decay), static_cast<Real>(step.phi)});
+  }
+  overstrains_.assign(overstrain_count * kernels_->cell_list.cells * branches_.size() * order_.plan.blocks, Real(0));
+}
+
+template <class Real>
+void CellForces<Real>::relax(const Padded<Real>* x) {
+  const std::vector<CellBranch<Real>> kept = branches_;
+  for (CellBranch<Real>& branch : branches_) branch.decay = 0;  // P = -phi E whatever it was
+  const std::vector<Padded<Real>> still(order_.place.size(), Padded<Real>{});
+  std::vector<Padded<Real>> unused = still;
+  add(x, still.data(), unused.data(), false);
+  branches_ = kept;
+}
+
+template <class Real>
+void CellForces<Real>::add_relaxing(const Padded<Real>* x, Padded<Real>* f) {
+  const std::vector<Real> kept = overstrains_;
+  const std::vector<CellBranch<Real>> branches = branches_;
+  const std::vector<Padded<Real>> still(order_.place.size(), Padded<Real>{});
+  std::vector<Padded<Real>> with = still, without = still;
+  add(x, still.data(), with.data(), false);
+  for (CellBranch<Real>& branch : branches_) branch.share = 0;
+  add(x, still.data(), without.data(), false);
+  branches_ = branches;
+  overstrains_ = kept;
+  for (std::size_t p = 0; p < with.size(); ++p)
+    for (int d = 0; d < 3; ++d) f[p].v[d] += with[p].v[d] - without[p].v[d];
 }
 
 template <class Real>

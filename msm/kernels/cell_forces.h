@@ -4,6 +4,7 @@
 #include "msm/kernels/cell_order.h"
 #include "msm/kernels/kernels.h"
 #include "msm/laws/laws.h"
+#include "problem/relaxation.h"
 
 namespace springproof {
 
@@ -26,10 +27,19 @@ class CellForces : public BlockForces<Real> {
   BlockPlan plan() const override { return order_.plan; }
   const ListKernels<Real>& kernels() const override { return kernels_->list; }
   NodalVectors origin() const override { return X_; }
-  void add_blocks(long begin, long end, const Padded<Real>* x, const Padded<Real>* s, Padded<Real>* f) const override;
+  void add_blocks(long begin, long end, const Padded<Real>* x, const Padded<Real>* s, Padded<Real>* f) override;
   bool viscous() const override { return viscous_; }
   bool coupled() const override { return !carried_.empty(); }
   void add(const Padded<Real>* x, const Padded<Real>* s, Padded<Real>* f, bool lagged) override;
+  bool relaxing() const override { return !branches_.empty(); }
+  void relax(const Padded<Real>* x) override;
+  void add_relaxing(const Padded<Real>* x, Padded<Real>* f) override;
+
+  /// Gives the cells branches, relaxed at rest.
+  /// @param relaxation with branches or without
+  /// @param cells with the long-time moduli of the branches
+  /// @param time_step that each call of add_blocks() makes [s]
+  void set_branches(const Relaxation& relaxation, const AveragedSprings& cells, double time_step);
 
  private:
   /// At places, with what its spring is stretched by at rest.
@@ -51,7 +61,7 @@ class CellForces : public BlockForces<Real> {
   void store_forms(const MeasuredCells& law);
   void store_anchors(const Network& network);
   void store_bonds(const Network& network);
-  void add_cells(long begin, long end, const Padded<Real>* x, const Padded<Real>* s, Padded<Real>* f) const;
+  void add_cells(long begin, long end, const Padded<Real>* x, const Padded<Real>* s, Padded<Real>* f);
   void add_anchors(long begin, long end, const Padded<Real>* x, Padded<Real>* f) const;
   void add_bonds(long begin, long end, const Padded<Real>* x, Padded<Real>* f) const;
 
@@ -63,6 +73,8 @@ class CellForces : public BlockForces<Real> {
   std::vector<Real> numbers_, forms_;
   CellList<Real> list_;
   std::vector<Constants> constants_;  ///< of each material
+  std::vector<CellBranch<Real>> branches_;
+  std::vector<Real> overstrains_;
   std::vector<Held> anchors_;
   std::vector<Tie> ties_;
   std::vector<CarriedPoint> carried_;  ///< places

@@ -93,8 +93,7 @@ void ListForces<Real>::add(const Padded<Real>* x, const Padded<Real>*, Padded<Re
 }
 
 template <class Real>
-void ListForces<Real>::add_blocks(long begin, long end, const Padded<Real>* x, const Padded<Real>*,
-                                  Padded<Real>* f) const {
+void ListForces<Real>::add_blocks(long begin, long end, const Padded<Real>* x, const Padded<Real>*, Padded<Real>* f) {
   kernels_->spring_forces(blocks_.pattern(begin, end),
                           {k_.data() + block_springs * begin, kL_.data() + block_springs * begin, nullptr}, x, f);
 }

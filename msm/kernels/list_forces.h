@@ -42,7 +42,7 @@ class ListForces : public BlockForces<Real> {
   const ListKernels<Real>& kernels() const override { return *kernels_; }
   NodalVectors origin() const override { return NodalVectors::Zero(blocks_.nodes(), 3); }
   void add(const Padded<Real>* x, const Padded<Real>* s, Padded<Real>* f, bool lagged) override;
-  void add_blocks(long begin, long end, const Padded<Real>* x, const Padded<Real>* s, Padded<Real>* f) const override;
+  void add_blocks(long begin, long end, const Padded<Real>* x, const Padded<Real>* s, Padded<Real>* f) override;
   bool coupled() const override { return !dispersion_.empty(); }
 
  private:

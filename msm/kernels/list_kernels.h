@@ -109,6 +109,14 @@ constexpr int area = 0, mean = 1, mixed = 4, variance = 7, per_edge = 10, count 
 constexpr int of_form = 171;  ///< MeasuredCells
 }  // namespace cell_number
 
+/// A branch that relaxes, over a step (problem/relaxation.h).
+template <class Real>
+struct CellBranch {
+  Real share, decay, phi;
+};
+constexpr int overstrain_count = 18;  ///< numbers P of a branch of a cell, Q = P + phi E at the end of a step: of twice
+                                      ///< the deviatoric strain and of the hourglass components over the edge [1]
+
 /// Cells in blocks of as many as a kernel computes together; an unused place of the last block repeats a cell without
 /// volume.
 template <class Real>
@@ -119,8 +127,12 @@ struct CellList {
   const Real* forms = nullptr;    ///< of measured cells: per block each number of MeasuredCells::form in turn [N/m]
   LatticeAveraged<Real> springs = {};   ///< moduli, hourglass stiffness times G / 8 [Pa]; of measured cells no curve
   LatticeAveraged<Real> dashpots = {};  ///< the same times the time of retardation [s]; without a curve
-  bool boxes = false;                   ///< full cells that are no cubes: l that of the cube of their volume, rho p_i^2
-  Real proportions[3] = {1, 1, 1};      ///< CellSet::proportions
+  LatticeAveraged<Real> relaxing = {};  ///< long-time moduli of the branches; without a curve
+  int branch_count = 0;
+  const CellBranch<Real>* branches = nullptr;
+  Real* overstrains = nullptr;      ///< per block and branch each of overstrain_count in turn
+  bool boxes = false;               ///< full cells that are no cubes: l that of the cube of their volume, rho p_i^2
+  Real proportions[3] = {1, 1, 1};  ///< CellSet::proportions
   Real per_proportion[3] = {1, 1, 1};
 };
 
@@ -131,6 +143,8 @@ struct CellListKernels {
   void (*forces)(const CellList<Real>&, const Padded<Real>* u, Padded<Real>* f);
   /// f += forces of springs and dashpots.  Velocities are s times the fourth number of u.
   void (*viscous_forces)(const CellList<Real>&, const Padded<Real>* u, const Padded<Real>* s, Padded<Real>* f);
+  /// The same with branches, whose overstrains become those of the end of the step; null s: no dashpots.
+  void (*relaxing_forces)(const CellList<Real>&, const Padded<Real>* u, const Padded<Real>* s, Padded<Real>* f);
 };
 
 }  // namespace springproof

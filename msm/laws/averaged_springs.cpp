@@ -272,7 +272,7 @@ Eigen::Matrix<double, 24, 24> AveragedSprings::cell_matrix(const CellShape& cell
 const char* AveragedSprings::lacks(Capability what) const {
   using enum Capability;
   const bool by_kernels = what == lattice_kernels || what == gpu || what == cell_kernels;
-  if (shift > 0 && (by_kernels || what == energy_momentum || what == large_displacements))
+  if (shift > 0 && (by_kernels || what == energy_momentum || what == relaxation || what == large_displacements))
     return "with a shift are linear in the displacement";
   if (by_kernels && (curve == StrainCurve::springs_hencky || curve == StrainCurve::springs_neo_hooke))
     return "of single springs at large strain have no kernels";

@@ -96,6 +96,10 @@ std::string lacks(const Network& network, Capability what) {
       return cells.cut() ? "" : "its cells are not cut";
     case nodal_pressures:
       return cells.grid && !periodic ? "" : "its network is no lattice of equal cells, or is periodic";
+    case relaxation:
+      if (!network.image_of.empty()) return "its network is periodic";
+      if (!cells.materials.empty()) return "its cells are of several materials";
+      return cells.empty() ? "its network has no cells" : "";
     case mass_average:
       return mass_average_lacks(network);
     case lammps:

@@ -38,10 +38,11 @@ enum class Capability {
   large_displacements,  ///< forces turn with the body
   energy_momentum,      ///< forces over a step that keep energy and momenta (msm/dynamics/terms/energy_momentum.h)
   viscosity,            ///< dashpots (msm/dynamics/terms/viscosity.h)
+  relaxation,           ///< branches that relax (msm/dynamics/terms/relaxing_cells.h)
   mass_average,         ///< a share of consistent mass (msm/dynamics/terms/mass_average.h)
   lammps,               ///< bonds and angles of LAMMPS
 };
-constexpr std::array<const char*, 15> names_of(Capability) {
+constexpr std::array<const char*, 16> names_of(Capability) {
   return {"lattice kernels",
           "steps on a GPU",
           "cell kernels",
@@ -55,6 +56,7 @@ constexpr std::array<const char*, 15> names_of(Capability) {
           "large displacements",
           "energy-momentum steps",
           "viscosity",
+          "relaxation",
           "consistent mass",
           "terms of LAMMPS"};
 }
@@ -74,9 +76,9 @@ class Capabilities {
 };
 
 /// What every law has unless its function `lacks` says no.
-inline constexpr Capabilities of_any_law = {Capability::equal_cells, Capability::nodal_pressures,
-                                            Capability::energy,      Capability::large_displacements,
-                                            Capability::viscosity,   Capability::mass_average};
+inline constexpr Capabilities of_any_law = {
+    Capability::equal_cells, Capability::nodal_pressures, Capability::energy,      Capability::large_displacements,
+    Capability::viscosity,   Capability::relaxation,      Capability::mass_average};
 
 /// Properties of a force law.  What depends on its parameters a law refuses by a function `lacks(Capability)`: why,
 /// with the law as its subject, or nullptr.

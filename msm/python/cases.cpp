@@ -57,7 +57,8 @@ py::list problems_of(const fs::path& file) {
     BoundaryConditions bc = transfer(e.loads, *body->mesh, material.density, e.model_kinematics());
     for (std::size_t unknown = 0; unknown < bc.fixed.size(); ++unknown)
       if (!bc.fixed[unknown]) bc.prescribed.data()[unknown] = std::numeric_limits<double>::quiet_NaN();
-    all.append(py::make_tuple(body, material, moved(std::move(bc.external)), moved(std::move(bc.prescribed))));
+    all.append(
+        py::make_tuple(body, e.at_rest(material), moved(std::move(bc.external)), moved(std::move(bc.prescribed))));
   }
   return all;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "meshes/volume.h"
+#include "msm/algebra/direct_solver.h"
 #include "msm/laws/capabilities.h"
 #include "msm/statics/equilibrium.h"
 #include "msm/statics/mixed_form.h"

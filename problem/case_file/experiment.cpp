@@ -250,6 +250,7 @@ Experiment read_tables(const TomlTable& document, Experiment experiment) {
   settle_kelvin(experiment);
   read_line(document, experiment);
   read_dynamics(document, experiment);
+  read_relaxation(document, experiment);
   leave_out_equilibria(document, experiment);
   read_fracture(document, experiment);
   read_compare(document, experiment);
@@ -290,6 +291,11 @@ std::string to_string(Source source) {
       return "regression";
   }
   return "unknown";
+}
+
+IsotropicMaterial Experiment::at_rest(const IsotropicMaterial& material) const {
+  const double creep = relaxation.creep_after(loaded_for);
+  return creep == 1 ? material : with_shear(material, 1 / creep);
 }
 
 Experiment parse_experiment(const std::string& text, const std::filesystem::path& file) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,6 +19,7 @@
 #include "problem/model_choice.h"
 #include "problem/patch_rule.h"
 #include "problem/plane.h"
+#include "problem/relaxation.h"
 #include "problem/system/input_error.h"
 
 namespace springproof {
@@ -132,6 +134,9 @@ struct Experiment {
   Body body;
   std::vector<PatchRule> patches;            ///< defined by rules, in addition to those of the body itself
   std::vector<IsotropicMaterial> materials;  ///< in the file's order, each Poisson's ratio once
+  Relaxation relaxation;                     ///< of each of them; their moduli are those at long times
+  SourceLocation relaxation_where;           ///< of [material.relaxation]
+  double loaded_for = std::numeric_limits<double>::infinity();  ///< of equilibria [s]
   std::vector<Load> loads;
   std::vector<AttachedMass> masses;            ///< beside the body's own
   std::size_t weights = 0;                     ///< loads, the last of `loads`, that are the weight of `masses`
@@ -159,6 +164,8 @@ struct Experiment {
   std::vector<std::string> left_out;    ///< what was measured too, and is not compared
   std::string text;                     ///< the file as read
 
+  /// @return the solid of equilibria: a material of the case, relaxed for `loaded_for`
+  IsotropicMaterial at_rest(const IsotropicMaterial& material) const;
   Kinematics model_kinematics() const { return kinematics == "linear" ? Kinematics::linear : Kinematics::finite; }
 };
 

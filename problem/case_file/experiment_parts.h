@@ -9,6 +9,9 @@ namespace springproof {
 /// One [[load]]: one load for each patch named by `on`, or a single one without `on`.
 std::vector<Load> read_load(const TomlValue& value);
 
+/// [material.relaxation]; [dynamics] must have been read.
+void read_relaxation(const TomlTable& document, Experiment& experiment);
+
 /// The [[mass]] tables, and their weight among the loads, which must have been read.
 void read_masses(const TomlTable& document, Experiment& experiment);
 

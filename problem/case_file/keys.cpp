@@ -86,6 +86,17 @@ constexpr Key material_keys[] = {
   {"bulk_modulus_Pa",   "bulk modulus",           "a finite number > 0, or a list of such",      "two moduli", "1e6"},
   {"lame_lambda_Pa",    "Lame's first parameter", "a finite number, or a list of such",          "two moduli", "4e5"},
   {"density_kg_m3",     "density",                above_0,                                       "1000; required by gravity", "1100"},
+  {"relaxation",        "Maxwell elements beside these moduli", "a table",                                       "none", "{ branches = [{ share = 0.116, time_s = 0.27 }] }"},
+};
+
+constexpr Key relaxation_keys[] = {
+  {"branches", "the elements ([motion](motion.md#springs-that-relax))", "a list of up to 8 { share, time_s }", required, "[{ share = 0.116, time_s = 0.27 }, { share = 0.057, time_s = 2.6 }]"},
+  {"equilibrium_after_s", "of equilibria, under their loads; without [dynamics]", above_0, "for ever", "4"},
+};
+
+constexpr Key branch_keys[] = {
+  {"share",  "of the long-time shear modulus", "a number > 0, up to 1000",    required, "0.116"},
+  {"time_s", "in which its stress falls to 1/e",           "a finite number > 0, its own", required, "0.27"},
 };
 
 constexpr Key on = {"on", "where it acts", "a patch name or a list of them", required, "\"x_min\""};
@@ -277,6 +288,8 @@ constexpr KeyTable tables[] = {
   {"patch.facing",               "",                                 "",                                                            facing_keys},
   {"patch.near",                 "",                                 "",                                                            near_keys},
   {"material",                   "[material]",                       "Two moduli. A single number goes with each of a list; two lists are read in pairs.", material_keys},
+  {"material.relaxation",        "",                                 "",                                                            relaxation_keys},
+  {"material.relaxation.branches", "",                               "",                                                            branch_keys},
   {"load.displacement_m",        "a displacement",                   "",                                                            displacement_keys},
   {"load.displacement_gradient", "an affine displacement",           "",                                                            affine_keys},
   {"load.rotation_deg",          "a rotation",                       "",                                                            rotation_keys},

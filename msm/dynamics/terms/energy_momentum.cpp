@@ -3,7 +3,6 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <cmath>
-#include <map>
 #include <stdexcept>
 
 #include "msm/laws/capabilities.h"
@@ -72,8 +71,7 @@ void pull_springs(const Network& network, const NodalVectors& x0, const NodalVec
 
 struct AddSecantForces {
   const Network& network;
-  const std::vector<CellForm>& forms;
-  const std::vector<int>& form_of;
+  const CellForms& forms;
   const NodalVectors &x0, &x1;
   NodalVectors& f;
 
@@ -130,7 +128,7 @@ struct AddSecantForces {
       });
     };
     for (std::size_t c = 0; c < network.cells.size(); ++c) {
-      const CellForm& form = forms[form_of[c]];
+      const CellForm& form = forms[c];
       const Corners p0 = corners_at(network.cells.corners[c], x0), p1 = corners_at(network.cells.corners[c], x1);
       const Mat3 F0 = p0 * form.gradient.transpose(), F1 = p1 * form.gradient.transpose(), F = (F0 + F1) / 2;
       const Eigen::Matrix<double, 3, 4> q0 = p0 * corner_patterns(), q1 = p1 * corner_patterns(), q = (q0 + q1) / 2,
@@ -157,28 +155,12 @@ struct AddSecantForces {
 
 EnergyMomentum::EnergyMomentum(const MassSpringModel& model) : model_(model) {
   if (const std::string why = lacks(model, Capability::energy_momentum); !why.empty()) throw std::invalid_argument(why);
-  const AveragedSprings* law = averaged_springs_of(model);
-  if (!law) return;
-  std::map<std::pair<double, int>, int> full;  // by edge and material
-  const Network& network = model.network;
-  for (std::size_t c = 0; c < network.cells.size(); ++c) {
-    const auto make = [&] {
-      forms_.push_back(cell_form(*law, network.cells.shape(c)));
-      return static_cast<int>(forms_.size()) - 1;
-    };
-    const std::pair key(network.cells.edge_of(c), network.cells.material(c));
-    if (!network.cells.is_full(c))
-      form_of_.push_back(make());
-    else if (const auto known = full.find(key); known != full.end())
-      form_of_.push_back(known->second);
-    else
-      form_of_.push_back(full[key] = make());
-  }
+  if (const AveragedSprings* law = averaged_springs_of(model)) forms_ = CellForms(*law, model.network.cells);
 }
 
 NodalVectors EnergyMomentum::forces(const NodalVectors& x0, const NodalVectors& x1) const {
   NodalVectors f = NodalVectors::Zero(x0.rows(), 3);
-  for (const ForceLaw& law : model_.laws) std::visit(AddSecantForces{model_.network, forms_, form_of_, x0, x1, f}, law);
+  for (const ForceLaw& law : model_.laws) std::visit(AddSecantForces{model_.network, forms_, x0, x1, f}, law);
   hand_back(model_.network.cells.carried, f);
   return f;
 }

@@ -1,8 +1,7 @@
 // Internal forces over a finite step that do exactly the work of the energy's change and have no torque.
 #pragma once
 
-#include <vector>
-
+#include "msm/laws/cell_forms.h"
 #include "msm/laws/laws.h"
 
 namespace springproof {
@@ -28,8 +27,7 @@ class EnergyMomentum {
 
  private:
   const MassSpringModel& model_;
-  std::vector<CellForm> forms_;  ///< of averaged springs: of full cells, one per size, and of each cut one
-  std::vector<int> form_of_;     ///< each cell
+  CellForms forms_;  ///< of averaged springs
 };
 
 }  // namespace springproof

@@ -5,6 +5,15 @@
 
 namespace springproof {
 
+AveragedSprings averaged_beside(const MassSpringModel& model, const IsotropicMaterial& material) {
+  if (const AveragedSprings* own = averaged_springs_of(model)) return *own;
+  AveragedSprings exact;
+  exact.shear_modulus = shear_modulus(material);
+  exact.lame_lambda = lame_lambda(material);
+  exact.hourglass = HourglassStiffness::of_pattern(2, material.poisson_ratio, true, true);
+  return exact;
+}
+
 Viscosity Viscosity::of(const MassSpringModel& model, const IsotropicMaterial& material, double time) {
   if (!(time >= 0)) throw InputError("viscosity: its time must be >= 0");
   Viscosity viscosity;
@@ -13,13 +22,7 @@ Viscosity Viscosity::of(const MassSpringModel& model, const IsotropicMaterial& m
     throw InputError("viscosity does not suit this model: " + why);
   viscosity.time_ = time;
   viscosity.along_springs_ = consists_of<Springs>(model);
-  if (const AveragedSprings* own = averaged_springs_of(model))
-    viscosity.cells_ = *own;
-  else if (!model.network.cells.empty()) {
-    viscosity.cells_.shear_modulus = shear_modulus(material);
-    viscosity.cells_.lame_lambda = lame_lambda(material);
-    viscosity.cells_.hourglass = HourglassStiffness::of_pattern(2, material.poisson_ratio, true, true);
-  }
+  if (!model.network.cells.empty()) viscosity.cells_ = averaged_beside(model, material);
   return viscosity;
 }
 

@@ -8,6 +8,12 @@
 
 namespace springproof {
 
+/// Averaged springs with a model's moduli at rest, for what acts beside its own laws.
+/// @param model a model
+/// @param material of the body
+/// @return its own, or those exact for the material
+AveragedSprings averaged_beside(const MassSpringModel& model, const IsotropicMaterial& material);
+
 /// Kelvin-Voigt viscosity: a rate of strain adds `time` times Hooke's stress of a strain of that size.  A vibration of
 /// circular frequency w loses the share w time / 2 of critical damping, a rigid motion nothing; both momenta are kept
 /// at any deformation.

@@ -202,8 +202,52 @@ SPRINGPROOF_INLINE void measured_stress(const Real* form, const Cells<Real>& cel
   }
 }
 
+/// Sums of the branches' overstrains by their shares, of twice the strain (entries strain_of) and of v, which P of the
+/// next step takes from these.
+template <class Real>
+SPRINGPROOF_INLINE void relax(const CellList<Real>& list, Real* P, const Lanes<Real> (&D)[3][3],
+                              const Lanes<Real> (&v)[4][3], Lanes<Real> (&Z)[overstrain_count]) {
+  using V = Lanes<Real>;
+  V z[overstrain_count];
+  for (int e = 0; e < 6; ++e) {
+    const int i = strain_of[e][0], j = strain_of[e][1];
+    z[e] = (D[i][j] + D[j][i]) + (D[0][i] * D[0][j] + D[1][i] * D[1][j] + D[2][i] * D[2][j]);
+  }
+  const V mean = Real(1.0 / 3) * (z[0] + z[1] + z[2]);
+  for (int e = 0; e < 3; ++e) z[e] -= mean;
+  for (int m = 0; m < 4; ++m)
+    for (int j = 0; j < 3; ++j) z[6 + 3 * m + j] = v[m][j];
+  for (V& sum : Z) sum = 0;
+  for (int b = 0; b < list.branch_count; ++b) {
+    const auto [share, decay, phi] = list.branches[b];
+    for (int e = 0; e < overstrain_count; ++e, P += cells<Real>) {
+      const V now = phi * z[e], Q = load(P) + now;
+      Z[e] += share * Q;
+      store<Real>(decay * Q - now, P);
+    }
+  }
+}
+
+/// v += those of the hourglass components.
+template <class Real>
+SPRINGPROOF_INLINE void add_overstrains(const Lanes<Real> (&Z)[overstrain_count], Lanes<Real> (&v)[4][3]) {
+  for (int m = 0; m < 4; ++m)
+    for (int j = 0; j < 3; ++j) v[m][j] += Z[6 + 3 * m + j];
+}
+
+/// P += G F Z.
+template <class Real>
+SPRINGPROOF_INLINE void add_relaxing_stress(const Lanes<Real>& shear, const Lanes<Real> (&F)[3][3],
+                                            const Lanes<Real> (&Z)[overstrain_count], Lanes<Real> (&P)[3][3]) {
+  for (int i = 0; i < 3; ++i) {
+    P[i][0] += shear * (F[i][0] * Z[0] + F[i][1] * Z[5] + F[i][2] * Z[4]);
+    P[i][1] += shear * (F[i][0] * Z[5] + F[i][1] * Z[1] + F[i][2] * Z[3]);
+    P[i][2] += shear * (F[i][0] * Z[4] + F[i][1] * Z[3] + F[i][2] * Z[2]);
+  }
+}
+
 /// Forces of a vector of cells, the lanes from `at` of their block; `rates`: velocities of the corners.
-template <LatticeCurve curve, bool viscous, class Real>
+template <LatticeCurve curve, bool viscous, bool relaxing, class Real>
 SPRINGPROOF_INLINE void forces_of_cells(const CellList<Real>& list, long block, int at, Corners<Real>& u,
                                         const Corners<Real>& rates) {
   using V = Lanes<Real>;
@@ -219,12 +263,27 @@ SPRINGPROOF_INLINE void forces_of_cells(const CellList<Real>& list, long block, 
   for (auto& of_pattern : w)
     for (V& entry : of_pattern) entry = 0;
   turned_back(F, S, v);
+  V Z[overstrain_count];
+  if constexpr (relaxing)
+    relax(list, list.overstrains + overstrain_count * cells<Real> * list.branch_count * block + at, D, v, Z);
   if constexpr (curve == LatticeCurve::none) {
     measured_stress<Real>(list.forms + cell_number::of_form * cells<Real> * block + at, c, D, F, dilatation, v, P, w);
   } else {
     const LatticeAveraged<V> springs = times_area(list.springs, c.area);
+    if constexpr (relaxing) add_overstrains<Real>(Z, v);  // branches of averaged springs have their constants
     add_hourglass_forces(springs, c, v, w);
     first_stress<curve>(springs, D, inverse_transposed, dilatation, P);
+  }
+  if constexpr (relaxing) {
+    const LatticeAveraged<V> branches = times_area(list.relaxing, c.area);
+    add_relaxing_stress<Real>(branches.shear, F, Z, P);
+    if constexpr (curve == LatticeCurve::none) {
+      V of_patterns[4][3];
+      for (auto& of_pattern : of_patterns)
+        for (V& entry : of_pattern) entry = 0;
+      add_overstrains<Real>(Z, of_patterns);
+      add_hourglass_forces(branches, c, of_patterns, w);
+    }
   }
   if constexpr (viscous) {
     const LatticeAveraged<V> dashpots = times_area(list.dashpots, c.area);
@@ -259,7 +318,7 @@ SPRINGPROOF_INLINE void forces_of_cells(const CellList<Real>& list, long block, 
   }
 }
 
-template <LatticeCurve curve, bool viscous, class Real>
+template <LatticeCurve curve, bool viscous, bool relaxing, class Real>
 void forces_of_list(const CellList<Real>& list, const Padded<Real>* u, const Padded<Real>* s, Padded<Real>* f) {
   alignas(64) Corners<Real> at, rates;
   for (long b = 0; b < list.blocks; ++b) {
@@ -272,35 +331,43 @@ void forces_of_list(const CellList<Real>& list, const Padded<Real>* u, const Pad
       }
     }
     for (int lane = 0; lane < cells<Real>; lane += lanes<Real>)
-      forces_of_cells<curve, viscous>(list, b, lane, at, rates);
+      forces_of_cells<curve, viscous, relaxing>(list, b, lane, at, rates);
     for (int n = 0; n < 8; ++n) scatter(at[n], places + n * cells<Real>, f);
   }
 }
 
-template <bool viscous, class Real>
+template <bool viscous, bool relaxing, class Real>
 void forces_of_curve(const CellList<Real>& list, const Padded<Real>* u, const Padded<Real>* s, Padded<Real>* f) {
   switch (list.springs.curve) {
     case LatticeCurve::hencky:
-      return forces_of_list<LatticeCurve::hencky, viscous>(list, u, s, f);
+      return forces_of_list<LatticeCurve::hencky, viscous, relaxing>(list, u, s, f);
     case LatticeCurve::neo_hooke:
-      return forces_of_list<LatticeCurve::neo_hooke, viscous>(list, u, s, f);
+      return forces_of_list<LatticeCurve::neo_hooke, viscous, relaxing>(list, u, s, f);
     case LatticeCurve::neo_hooke_isochoric:
-      return forces_of_list<LatticeCurve::neo_hooke_isochoric, viscous>(list, u, s, f);
+      return forces_of_list<LatticeCurve::neo_hooke_isochoric, viscous, relaxing>(list, u, s, f);
     case LatticeCurve::none:
-      return forces_of_list<LatticeCurve::none, viscous>(list, u, s, f);
+      return forces_of_list<LatticeCurve::none, viscous, relaxing>(list, u, s, f);
   }
 }
 
 template <class Real>
 void forces(const CellList<Real>& list, const Padded<Real>* u, Padded<Real>* f) {
-  forces_of_curve<false>(list, u, static_cast<const Padded<Real>*>(nullptr), f);
+  forces_of_curve<false, false>(list, u, static_cast<const Padded<Real>*>(nullptr), f);
+}
+
+template <class Real>
+void relaxing_forces(const CellList<Real>& list, const Padded<Real>* u, const Padded<Real>* s, Padded<Real>* f) {
+  s ? forces_of_curve<true, true>(list, u, s, f) : forces_of_curve<false, true>(list, u, s, f);
 }
 
 }  // namespace
 
 template <class Real>
 CellListKernels<Real> cell_list_kernels() {
-  return {.cells = cells<Real>, .forces = forces<Real>, .viscous_forces = forces_of_curve<true, Real>};
+  return {.cells = cells<Real>,
+          .forces = forces<Real>,
+          .viscous_forces = forces_of_curve<true, false, Real>,
+          .relaxing_forces = relaxing_forces<Real>};
 }
 
 template CellListKernels<double> cell_list_kernels();

@@ -83,6 +83,33 @@ TEST(FemMotion, ComesToRestAtTheEquilibrium) {
     }
 }
 
+TEST(FemMotion, ABranchOfALongTimeIsStiffnessOneOfAShortTimeIsNothing) {
+  for (const bool energy_momentum : {false, true})
+    for (const char* law : {"linear", "hencky"})
+      for (const double nu : {0.3, 0.499}) {
+        const auto end = [&](const Relaxation& relaxation, double shear) {
+          fem::GridProblem problem = block_in_motion({4, 1, 1}, {4, 1, 1}, nu, {0.5, 0.3, {}, false}, 40);
+          problem.motion->energy_momentum = energy_momentum;
+          problem.motion->relaxation = relaxation;
+          problem.law = law;
+          problem.material = with_shear({1e5, nu, 1000}, shear);
+          const double load =
+              std::string(law) == "linear" ? -500 : -0.5;  // strain and law of branches are linear there
+          problem.loads = {PrescribedDisplacement{"x_min", {0.0, 0.0, 0.0}}, PatchForce{"x_max", {0, 0, load}}};
+          const fem::Solution s = fem::solve_grid(problem);
+          EXPECT_TRUE(s.ok) << s.message;
+          return NodalVectors(s.displacement / load);
+        };
+        const NodalVectors elastic = end({}, 1), stiff = end({}, 1.2), size = end({{{0.2, 0.5}}}, 1);
+        EXPECT_GT(largest(stiff - elastic), 0.05 * largest(elastic));
+        const double same = nu < 0.4 ? 2e-4 : 0.03;  // pressures leave dilatation at points, which branches do not see
+        EXPECT_LT(largest(end({{{0.2, 1e9}}}, 1) - stiff), same * largest(stiff)) << law << nu << energy_momentum;
+        EXPECT_LT(largest(end({{{0.2, 1e-9}}}, 1) - elastic), 1e-6 * largest(elastic)) << law << nu;
+        EXPECT_GT(largest(size - elastic), 0.01 * largest(elastic));
+        EXPECT_GT(largest(size - stiff), 0.01 * largest(stiff));
+      }
+}
+
 TEST(FemMotion, ReleasedStartsFromTheEquilibriumAndConvergesToSecondOrder) {
   for (const double nu : {0.3, 0.49}) {
     std::vector<fem::Solution> of_steps;

@@ -55,7 +55,9 @@ void expect_conserved(const MassSpringModel& model) {
     options.time_step = implicit ? 4 * dt : 0.5 * dt;
     options.duration = 200 * dt;
     double energy_off = 0, momentum = 0, spin = 0, moving = 0, turning = 0;
-    options.after_step = [&](double, const NodalVectors& x, NodalVectors v, const BoundaryConditions&) {
+    options.after_step = [&](const MotionSample& at) {
+      const NodalVectors& x = at.x;
+      NodalVectors v = at.v;
       if (!implicit) {  // the velocity of a step is half a step behind
         const NodalVectors f = forces(model, x);
         for (Eigen::Index n = 0; n < v.rows(); ++n) v.row(n) += *options.time_step / 2 * per_mass[n] * f.row(n);
@@ -98,7 +100,8 @@ void expect_stable(const MassSpringModel& model) {
   const double start = energy(model, options.start);
   double largest = 0;
   options.stride = 100;
-  options.after_step = [&](double, const NodalVectors& x, const NodalVectors&, const BoundaryConditions&) {
+  options.after_step = [&](const MotionSample& at) {
+    const NodalVectors& x = at.x;
     largest = std::max(largest, energy(model, x));
   };
   EXPECT_TRUE(run_dynamics(model, material.density, no_loads(model.network), options).state.ok);

@@ -54,7 +54,9 @@ EnergyRecord energies(const Cantilever& c, double time_step, double duration) {
   DynamicsOptions options;
   options.time_step = time_step;
   options.duration = duration;
-  options.after_step = [&](double, const NodalVectors& x, const NodalVectors& v, const auto&) {
+  options.after_step = [&](const MotionSample& at) {
+    const NodalVectors& x = at.x;
+    const NodalVectors& v = at.v;
     const NodalVectors internal = forces(model, x), force = internal + bc.external;
     NodalVectors acceleration = force;
     for (Eigen::Index i = 0; i < force.size(); ++i)
@@ -224,7 +226,8 @@ double growth_of_undamped_motion(const Cantilever& c, long steps) {
   options.time_step = 0.9 * safe_time_step(c.model(), density);
   options.duration = (static_cast<double>(steps) - 0.5) * *options.time_step;
   long step = 0;
-  options.after_step = [&](double, const NodalVectors&, const NodalVectors& v, const auto&) {
+  options.after_step = [&](const MotionSample& at) {
+    const NodalVectors& v = at.v;
     double& quarter = largest[4 * step++ / steps];
     quarter = std::max(quarter, v.squaredNorm());
   };

@@ -282,7 +282,8 @@ struct Cantilever {
     options.time_step = dt;
     options.duration = duration;
     options.start = model.network.X + amplitude * mode;
-    options.after_step = [&](double, const NodalVectors& x, const NodalVectors&, const BoundaryConditions&) {
+    options.after_step = [&](const MotionSample& at) {
+      const NodalVectors& x = at.x;
       along.push_back((x - model.network.X).cwiseProduct(mode).sum() / mode.squaredNorm());
     };
     const DynamicsResult result = run_dynamics(

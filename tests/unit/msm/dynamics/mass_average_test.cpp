@@ -94,7 +94,9 @@ TEST(MassAverage, KeepsMomentaAndEnergy) {
       std::vector<double> energies;
       std::vector<Vec3> momenta, spins;
       double size = 0;
-      options.after_step = [&](double, const NodalVectors& x, NodalVectors s, const BoundaryConditions&) {
+      options.after_step = [&](const MotionSample& at) {
+        const NodalVectors& x = at.x;
+        NodalVectors s = at.v;
         const NodalVectors f = forces(model, x);
         for (Eigen::Index n = 0; n < s.rows(); ++n) s.row(n) += dt / 2 / mass[n] * f.row(n);
         const NodalVectors v = average.velocities(s);
@@ -181,7 +183,9 @@ TEST(MassAverage, VibratesWithTheFrequenciesOfItsMass) {
       for (Eigen::Index i = 0; i < unknowns; ++i) options.start.data()[free[i]] += shape[i];
       const double of_steps = 2 / dt * std::asin(w * dt / 2);
       double off = 0;
-      options.after_step = [&](double time, const NodalVectors& x, const NodalVectors&, const BoundaryConditions&) {
+      options.after_step = [&](const MotionSample& at) {
+        const double time = at.time;
+        const NodalVectors& x = at.x;
         for (Eigen::Index i = 0; i < unknowns; ++i)
           off = std::max(
               off, std::abs(x.data()[free[i]] - network.X.data()[free[i]] - shape[i] * std::cos(of_steps * time)));

@@ -158,7 +158,9 @@ TEST(Viscosity, AMotionDecaysAsItsModeShould) {
     options.duration = 4 / modes.frequencies[0];
     const double before = options.velocity.squaredNorm() * density * 4 / network.nodes();
     double largest = 0;
-    options.after_step = [&](double time, const NodalVectors&, const NodalVectors& v, const BoundaryConditions&) {
+    options.after_step = [&](const MotionSample& at) {
+      const double time = at.time;
+      const NodalVectors& v = at.v;
       if (time > 3.2 / modes.frequencies[0]) largest = std::max(largest, v.squaredNorm());
     };
     const DynamicsResult r = run_dynamics(

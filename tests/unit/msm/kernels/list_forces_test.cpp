@@ -216,7 +216,10 @@ TEST(ListMotion, IsThePlainMotion) {
         NodalVectors x, v;
         plain_steps(model, masses(network, 1), path, options, 60, x, v);
         NodalVectors last_v;
-        options.after_step = [&](double, const NodalVectors&, const NodalVectors& now, const auto&) { last_v = now; };
+        options.after_step = [&](const MotionSample& at) {
+          const NodalVectors& now = at.v;
+          last_v = now;
+        };
         const DynamicsResult result = run_dynamics(model, 1, path, options);
         ASSERT_EQ(result.steps, 60);
         const NodalVectors u = x - network.X;
