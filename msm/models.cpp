@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "meshes/materials.h"
 #include "meshes/volume.h"
 #include "msm/embedding/surface_shares.h"
 #include "msm/exchange/springs_file.h"
@@ -160,8 +161,7 @@ void require_material(const ModelParameters& p, const IsotropicMaterial& m) {
 
 EmbeddedModel build_embedded(const ModelParameters& p, const Mesh& mesh, const IsotropicMaterial& material,
                              const Region* region) try {
-  if (std::any_of(mesh.materials.begin(), mesh.materials.end(), [](int m) { return m != 0; }))
-    throw std::invalid_argument("has one material in all of the body, which has several (allowed: cut cells)");
+  require_one_material(mesh);
   if (p.springs) return build_from_file(p, mesh, material, region);
   if (passes_patch_test(p.row) && !region && !mesh.tetrahedra.empty())
     return build_on_vertices(p, mesh, material, fitted_on_vertices(p, mesh));

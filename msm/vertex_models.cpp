@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "meshes/materials.h"
 #include "msm/embedding/surface_shares.h"
 #include "msm/parameters/patch_fit.h"
 #include "msm/periodic/laws_of_model.h"
@@ -9,6 +10,7 @@
 
 namespace springproof {
 Network fitted_on_vertices(const ModelParameters& p, const Mesh& tetrahedra) {
+  require_one_material(tetrahedra);
   Network network = vertex_network(tetrahedra, static_cast<int>(std::lround(p.random.springs_per_node)));
   fit_patch(vertex_shares(tetrahedra, network).area, 1, network);
   return network;

@@ -9,7 +9,7 @@ namespace springproof {
 /// serves all materials.
 /// @param parameters of a model that passes_patch_test()
 /// @param tetrahedra of the body
-/// @throws std::runtime_error as fit_patch()
+/// @throws std::runtime_error as fit_patch(); std::invalid_argument if the body has several materials
 Network fitted_on_vertices(const ModelParameters& parameters, const Mesh& tetrahedra);
 
 /// The model of a material on such a network, embedded at the tetrahedra's vertices.  Exact nodal volumes from nu = 1/4

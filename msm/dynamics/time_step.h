@@ -34,9 +34,9 @@ namespace springproof {
 /// @throws std::invalid_argument if a node has no mass.
 double safe_time_step(const MassSpringModel& model, double density, bool lagged = false, double theta = 0);
 
-/// Softens the bonds of a model for explicit motion, so that its step is four fifths or more of that of its full cells:
-/// those of two cells together to K <= w^2/4 / sum_a w_a^2/m_a, w the largest frequency of a full cell of the stiffer
-/// of their materials; and the same across the interface as along it, so that they keep both momenta at any rotation.
+/// Softens the bonds of a model for explicit motion, so that they hardly shorten its step: those of two cells together
+/// to K <= w^2/4 / sum_a w_a^2/m_a, w the largest frequency of a full cell of the stiffer of their materials; and the
+/// same across the interface as along it, so that they keep both momenta at any rotation.
 /// @param model of several materials; with none it stays as it is
 /// @param density of the body's own material [kg/m^3]
 void soften_bonds(MassSpringModel& model, double density);

@@ -6,6 +6,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "meshes/materials.h"
+
 namespace springproof {
 
 CubicPattern isotropic_pattern(double face_to_cube) {
@@ -79,6 +81,7 @@ std::vector<Spring> superposed(const Network& network) {
 }  // namespace
 
 Network lattice_without_springs(const Mesh& mesh) {
+  require_one_material(mesh);
   const Grid& grid = grid_of(mesh);
   Network network;
   network.X = mesh.nodes;

@@ -26,7 +26,7 @@ std::vector<MassSpringModel> bars() {
   const Mesh both = test::mapped(halves, test::random_placement(2, edge));
   for (const VoxelGrid& g : {grid, test::halved_at_random(grid, 2, 8)}) {
     bars.push_back(
-        build_cut(test::model("hybmss_avg"), cut_body(g, both), {}, Mesh{}, material, {{1e5, 0.3, 3000}}).model);
+        build_cut(test::model("hybmss_avg"), cut_body(g, both), {}, Mesh{}, material, {{2e4, 0.3, 3000}}).model);
     soften_bonds(bars.back(), material.density);
   }
   EXPECT_GT(bars[1].network.cells.carried.size(), 50u);
@@ -122,8 +122,8 @@ TEST(CutMotion, SoftenedBondsLeaveMostOfTheStep) {
     const double soft = safe_time_step(model, 1);
     MassSpringModel cells = model;
     cells.network.bonds.clear();
-    EXPECT_GT(soft, 0.7 * safe_time_step(cells, 1)) << contrast;
-    EXPECT_LT(stiff, 0.8 * soft) << contrast;
+    EXPECT_GT(soft, 0.6 * safe_time_step(cells, 1)) << contrast;
+    EXPECT_LT(stiff, 0.9 * soft) << contrast;
   }
 }
 
