@@ -61,6 +61,7 @@ class BodyCells {
 
  private:
   struct Cell {
+    unsigned int material;  ///< number in Mesh::materials
     CellShape shape;
     Eigen::MatrixXd mass;                  ///< of one component [kg]
     std::vector<Eigen::Index> u;           ///< 3 a + i: component i of node a
@@ -72,7 +73,7 @@ class BodyCells {
     return {viscous.acts() ? Eigen::VectorXd(viscous.per_rate * (x.u - viscous.before)) : x.u, x.p};
   }
 
-  CellLaw law_;
+  std::vector<CellLaw> laws_;  ///< by material
   std::string form_;
   std::vector<Cell> cells_;
   std::vector<PetscInt> number_;  ///< of each degree of freedom among the free ones; -1: held

@@ -115,6 +115,8 @@ ReferenceValue extrapolate_two(double f1, double f2) {
 }
 
 std::string kind_of(const std::string& measure) {
+  if (const std::string of_region = quantity_of_region(measure); !of_region.empty())
+    return of_region == "pressure" ? "mean_stress" : of_region == "displacement" ? "mean_displacement" : of_region;
   return measure.starts_with("volume_change") ? "volume_change" : measure.substr(0, measure.find('.'));
 }
 

@@ -48,7 +48,9 @@ bool is_body(const std::string& name) {
 Experiment read_case(const std::string& name) {
   const std::vector<fs::path> found = find_cases({name});
   if (found.size() > 1) throw InputError(fmt::format("{} is a folder of {} cases; name one", name, found.size()));
-  return read_experiment(found.front());
+  Experiment experiment = read_experiment(found.front());
+  require_one_material(experiment, "export");
+  return experiment;
 }
 
 /// Before the work.
