@@ -21,7 +21,7 @@ fem::GridProblem bar(const std::string& element, int axis, const IsotropicMateri
   problem.degree = element[1] - '0';
   problem.material = first;
   problem.regions = {second};
-  problem.tolerance = 1e-11;
+  problem.tolerance = 1e-8;
   const auto add = [&](const auto& cell) {
     double middle = 0;
     for (const int n : cell) middle += problem.coarse.nodes(n, axis) / static_cast<double>(cell.size());
@@ -55,13 +55,13 @@ TEST_P(FemRegions, InSeriesAreExactAtAnyContrast) {
       const fem::Solution s = fem::solve_grid(problem);
       ASSERT_TRUE(s.ok) << s.message << " " << s.form;
       const double at_middle = -10 / confined_modulus(first), beyond = -10 / confined_modulus(second);
-      EXPECT_NEAR(s.displacement(0, 0) / at_middle, 1, 1e-7) << contrast << " " << nu << " " << s.form;
-      EXPECT_NEAR(s.displacement(1, 0) / (at_middle + beyond), 1, 1e-7) << contrast << " " << nu << " " << s.form;
+      EXPECT_NEAR(s.displacement(0, 0) / at_middle, 1, 1e-6) << contrast << " " << nu << " " << s.form;
+      EXPECT_NEAR(s.displacement(1, 0) / (at_middle + beyond), 1, 1e-6) << contrast << " " << nu << " " << s.form;
       ASSERT_EQ(s.regions.size(), 1u);
-      EXPECT_NEAR(s.regions[0].stress(0, 0) / -10, 1, 1e-7);
+      EXPECT_NEAR(s.regions[0].stress(0, 0) / -10, 1, 1e-6);
       EXPECT_NEAR(s.regions[0].stress(0, 1), -10 * nu / (1 - nu), 1e-5);
-      EXPECT_NEAR(s.regions[0].volume_change / beyond, 1, 1e-6 + 2 * std::abs(beyond));
-      EXPECT_NEAR(s.regions[0].displacement[0] / (at_middle + beyond / 2), 1, 1e-7);
+      EXPECT_NEAR(s.regions[0].volume_change / beyond, 1, 1e-6);
+      EXPECT_NEAR(s.regions[0].displacement[0] / (at_middle + beyond / 2), 1, 1e-6);
       EXPECT_NEAR(s.regions[0].energy / (5 * -beyond), 1, 1e-6);
     }
 }
@@ -75,7 +75,7 @@ TEST_P(FemRegions, InParallelShareTheForceByTheirModuli) {
                    PrescribedDisplacement{"z_min", {is_free, is_free, 0.0}}};
   const fem::Solution s = fem::solve_grid(problem);
   ASSERT_TRUE(s.ok) << s.message;
-  EXPECT_NEAR(s.reactions[1].force[0] / (0.005 * (1e4 + 1e7) / 2), 1, 1e-7) << s.form;
+  EXPECT_NEAR(s.reactions[1].force[0] / (0.005 * (1e4 + 1e7) / 2), 1, 1e-6) << s.form;
 }
 
 TEST_P(FemRegions, WeighWhatTheirDensitiesAre) {
@@ -93,7 +93,7 @@ TEST_P(FemRegions, OfOneMaterialAreNone) {
   problem.regions.clear();
   problem.coarse.materials.clear();
   const fem::Solution one = fem::solve_grid(problem);
-  EXPECT_LT((two.displacement - one.displacement).norm(), 1e-8 * one.displacement.norm());
+  EXPECT_LT((two.displacement - one.displacement).norm(), 1e-6 * one.displacement.norm());
 }
 
 INSTANTIATE_TEST_SUITE_P(Elements, FemRegions, testing::Values("q1", "q2", "p1", "p2"));

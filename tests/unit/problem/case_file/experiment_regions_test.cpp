@@ -61,7 +61,7 @@ TEST(CaseWithRegions, SaysOnceWhereEachLiesAndOfWhat) {
 TEST(CaseWithRegions, IsRefusedWhereOneMaterialIsKnown) {
   EXPECT_WORDS(message_of(body + tumour), "hybmss is of one material");
   EXPECT_WORDS(message_of("kinematics = \"hencky\"\n" + body + alone + tumour), "large strain is of one material");
-  EXPECT_WORDS(message_of(body + "[compare]\nmodels = []\n" + tumour + "[dynamics]\nduration_s = 1\n"),
+  EXPECT_WORDS(message_of("kinematics = \"hencky\"\n" + body + alone + tumour + "[dynamics]\nduration_s = 1\n"),
                "bodies of several materials are not moved");
   const Experiment e = parse_experiment(body + alone + tumour, "case.toml");
   try {
