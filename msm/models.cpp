@@ -160,6 +160,8 @@ void require_material(const ModelParameters& p, const IsotropicMaterial& m) {
 
 EmbeddedModel build_embedded(const ModelParameters& p, const Mesh& mesh, const IsotropicMaterial& material,
                              const Region* region) try {
+  if (std::any_of(mesh.materials.begin(), mesh.materials.end(), [](int m) { return m != 0; }))
+    throw std::invalid_argument("has one material in all of the body, which has several (allowed: cut cells)");
   if (p.springs) return build_from_file(p, mesh, material, region);
   if (passes_patch_test(p.row) && !region && !mesh.tetrahedra.empty())
     return build_on_vertices(p, mesh, material, fitted_on_vertices(p, mesh));
@@ -189,7 +191,8 @@ EmbeddedModel build_embedded(const ModelParameters& p, const Mesh& mesh, const I
 bool has_cut_cells(const ModelRow& row) { return row.topology == cells && can(row, Capability::equal_cells); }
 
 EmbeddedModel build_cut(const ModelParameters& p, const CutBody& body, const std::vector<std::string>& held,
-                        const Mesh& mesh, const IsotropicMaterial& material) {
+                        const Mesh& mesh, const IsotropicMaterial& material,
+                        const std::vector<IsotropicMaterial>& regions) try {
   if (!has_cut_cells(p.row))
     throw InputError(fmt::format(
         "{}: cannot be made of cut cells (allowed: lattices of cells without momentum dispersion)", p.row.name));
@@ -199,11 +202,17 @@ EmbeddedModel build_cut(const ModelParameters& p, const CutBody& body, const std
                     "frequencies; else coarsened = false)",
                     p.row.name));
   EmbeddedModel built;
-  built.model.network = cut_lattice(body, held, material.youngs_modulus);
-  built.model.laws = {averaged_law(p, material), Anchors{}};
+  std::vector<IsotropicMaterial> materials = {material};
+  materials.insert(materials.end(), regions.begin(), regions.end());
+  built.model.network = cut_lattice(body, held, materials);
+  AveragedSprings law = averaged_law(p, material);
+  for (const IsotropicMaterial& m : regions) law.regions.push_back(averaged_law(p, m));
+  built.model.laws = {std::move(law), Anchors{}};
   built.model.small_displacements_only = p.shift > 0 || !p.has(Extension::averaging);
   built.embedding = embed(body, held, built.model.network, mesh);
   return built;
+} catch (const std::invalid_argument& e) {
+  throw InputError(fmt::format("{}: {}", p.row.name, e.what()));
 }
 
 }  // namespace springproof

@@ -38,10 +38,13 @@ bool has_cut_cells(const ModelRow& row);
 /// @param held names of the patches that supports hold
 /// @param mesh in the body, at whose nodes results are given
 /// @param material of the body
+/// @param regions materials 1, 2, ... of the body's cells
 /// @return the model and how the mesh hangs in it
-/// @throws InputError unless has_cut_cells(parameters.row), and for measured cells (ModelParameters::coarsened).
+/// @throws InputError unless has_cut_cells(parameters.row), for measured cells (ModelParameters::coarsened), and if a
+///   cell has a material that is not given.
 EmbeddedModel build_cut(const ModelParameters& parameters, const CutBody& body, const std::vector<std::string>& held,
-                        const Mesh& mesh, const IsotropicMaterial& material);
+                        const Mesh& mesh, const IsotropicMaterial& material,
+                        const std::vector<IsotropicMaterial>& regions = {});
 
 /// The network of a springs file stands for one material.
 /// @param parameters of the model

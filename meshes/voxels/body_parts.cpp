@@ -132,25 +132,40 @@ void BodyParts::connect() {
       for (int q = begin[t]; q < p; ++q)
         if (moments[p].volume > least_volume && moments[q].volume > least_volume && share_a_face(cube[p], cube[q]))
           to_next.push_back({q, p});
-  for (std::size_t f = 0; f + 1 < facets_.size(); ++f) {
-    if (facets_[f].nodes != facets_[f + 1].nodes) continue;
-    const int a = facets_[f].tetrahedron, b = facets_[f + 1].tetrahedron;
-    cut_by_cells_beside(triangle(facets_[f].nodes), grid_, [&](const std::array<int, 3>&, const TriangleCorners& part) {
-      if (area_of(part) < least_area) return;
-      const long at = cube_beside(part, a), beyond = cube_beside(part, b);
-      const int p = find(a, at), q = find(b, beyond);
-      if (p < 0 || q < 0) return;
-      if (at == beyond)
-        in_cube.push_back({p, q});
-      else if (share_a_face(at, beyond))
-        to_next.push_back({p, q});
-    });
-  }
+  for (std::size_t f = 0; f + 1 < facets_.size(); ++f)
+    if (facets_[f].nodes == facets_[f + 1].nodes)
+      connect(facets_[f].nodes, facets_[f].tetrahedron, facets_[f + 1].tetrahedron);
+}
+
+void BodyParts::connect(const std::array<int, 3>& facet, int a, int b) {
+  cut_by_cells_beside(triangle(facet), grid_, [&](const std::array<int, 3>&, const TriangleCorners& part) {
+    if (area_of(part) < least_area) return;
+    const long at = cube_beside(part, a), beyond = cube_beside(part, b);
+    const int p = find(a, at), q = find(b, beyond);
+    if (p < 0 || q < 0) return;
+    if (at != beyond) {
+      if (share_a_face(at, beyond)) to_next.push_back({p, q});
+    } else if (material(a) == material(b))
+      in_cube.push_back({p, q});
+    else
+      add_interface(p, q, a, b, part);
+  });
+}
+
+void BodyParts::add_interface(int p, int q, int a, int b, TriangleCorners part) {
+  if (material(a) > material(b)) return add_interface(q, p, b, a, part);
+  const Tetrahedron& t = body_.tetrahedra[a];
+  const Vec3 inside = (X_[t[0]] + X_[t[1]] + X_[t[2]] + X_[t[3]]) / 4;
+  if ((part[1] - part[0]).cross(part[2] - part[0]).dot(part[0] - inside) < 0) std::swap(part[1], part[2]);
+  interfaces.push_back({{p, q}, part});
 }
 
 BodyPieces::BodyPieces(const BodyParts& parts) {
   UnitedNumbers classes(parts.cube.size());
   for (const auto& [p, q] : parts.in_cube) classes.unite(p, q);
+  std::vector<int> tetrahedron(parts.cube.size());
+  for (int t = 0; t + 1 < static_cast<int>(parts.begin.size()); ++t)
+    std::fill(tetrahedron.begin() + parts.begin[t], tetrahedron.begin() + parts.begin[t + 1], t);
   of_part.resize(parts.cube.size());
   std::vector<int> number(parts.cube.size(), -1);
   for (std::size_t p = 0; p < parts.cube.size(); ++p) {
@@ -159,6 +174,7 @@ BodyPieces::BodyPieces(const BodyParts& parts) {
       n = static_cast<int>(cube.size());
       cube.push_back(parts.cube[p]);
       capacity.push_back(std::pow(parts.size(parts.cube[p]), 3));
+      material.push_back(parts.material(tetrahedron[p]));
       moments.emplace_back();
     }
     of_part[p] = n;
@@ -167,6 +183,22 @@ BodyPieces::BodyPieces(const BodyParts& parts) {
   for (const auto& [p, q] : parts.to_next) links.push_back({of_part[p], of_part[q]});
   std::sort(links.begin(), links.end());
   links.erase(std::unique(links.begin(), links.end()), links.end());
+  for (const BodyParts::Interface& i : parts.interfaces) meets.push_back({of_part[i.parts[0]], of_part[i.parts[1]]});
+  std::sort(meets.begin(), meets.end());
+  meets.erase(std::unique(meets.begin(), meets.end()), meets.end());
+}
+
+std::vector<std::array<int, 2>> BodyPieces::bonded(const std::vector<char>& large) const {
+  std::vector<std::vector<int>> instead(cube.size());  // of small pieces, the large ones beside them
+  for (const auto& [p, q] : links)
+    if (material[p] == material[q] && large[p] != large[q]) instead[large[p] ? q : p].push_back(large[p] ? p : q);
+  for (std::size_t p = 0; p < cube.size(); ++p)
+    if (large[p]) instead[p] = {static_cast<int>(p)};
+  std::vector<std::array<int, 2>> pairs;
+  for (const auto& [p, q] : meets)
+    for (const int a : instead[p])
+      for (const int b : instead[q]) pairs.push_back({a, b});
+  return pairs;
 }
 
 double BodyPieces::number_cells() {
@@ -180,6 +212,7 @@ double BodyPieces::number_cells() {
   UnitedNumbers together(n);
   for (const auto& [p, q] : links)
     if (large[p] && large[q]) together.unite(p, q);
+  for (const auto& [p, q] : bonded(large)) together.unite(p, q);
   std::vector<double> size(n, 0);
   for (std::size_t p = 0; p < n; ++p)
     if (large[p]) size[together.of(static_cast<int>(p))] += moments[p].volume;

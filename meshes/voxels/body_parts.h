@@ -44,11 +44,22 @@ class BodyParts {
   /// @throws std::invalid_argument if there is none.
   int owner(const std::array<int, 3>& nodes) const;
 
+  /// Material of a tetrahedron.
+  int material(int tetrahedron) const { return body_.materials.empty() ? 0 : body_.materials[tetrahedron]; }
+
   std::vector<int> begin;  ///< first part of each tetrahedron, then the end
   std::vector<long> cube;
   std::vector<SolidMoments> moments;
-  std::vector<std::array<int, 2>> in_cube;  ///< parts connected within a cube
+  std::vector<std::array<int, 2>> in_cube;  ///< parts of one material connected within a cube
   std::vector<std::array<int, 2>> to_next;  ///< parts connected through a face between two cubes
+
+  /// A part of a facet within a cube, between parts of two tetrahedra of different materials; it is anticlockwise seen
+  /// from that of the larger one.
+  struct Interface {
+    std::array<int, 2> parts;  ///< that of the smaller material first
+    TriangleCorners triangle;
+  };
+  std::vector<Interface> interfaces;
 
  private:
   /// A facet of a tetrahedron, its nodes in ascending order.
@@ -62,6 +73,8 @@ class BodyParts {
   int find_or_add(long cube);
   bool share_a_face(long a, long b) const;
   void connect();
+  void connect(const std::array<int, 3>& facet, int a, int b);
+  void add_interface(int p, int q, int a, int b, TriangleCorners part);
 
   const VoxelGrid& grid_;
   const Mesh& body_;
@@ -74,15 +87,22 @@ struct BodyPieces {
   explicit BodyPieces(const BodyParts& parts);
 
   /// Numbers the pieces that are kept in the order of their cubes: those of at least 1/1000 of a cube that are
-  /// connected through such.  Returns the fraction of the volume that is left out.
+  /// connected through such, or meet in an interface.  Returns the fraction of the volume that is left out.
   double number_cells();
 
   std::vector<int> of_part;
   std::vector<long> cube;
   std::vector<SolidMoments> moments;
+  std::vector<int> material;
   std::vector<std::array<int, 2>> links;  ///< through faces
+  std::vector<std::array<int, 2>> meets;  ///< in an interface within a cube
   std::vector<double> capacity;           ///< volume of the cell that it is in
   std::vector<int> cell;                  ///< its number as a cell; -1: left out
+
+ private:
+  /// Large pieces that an interface ties: those that meet, and in the place of a small one those of its material
+  /// beside.
+  std::vector<std::array<int, 2>> bonded(const std::vector<char>& large) const;
 };
 
 }  // namespace springproof

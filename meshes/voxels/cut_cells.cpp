@@ -105,7 +105,7 @@ std::array<double, 8> CutBody::weights(int cell, const Vec3& point) const {
   return w;
 }
 
-int CutBody::nearest_cell(const Vec3& point) const {
+int CutBody::nearest_cell(const Vec3& point, int material) const {
   const std::array<int, 3> at = cube_at(grid, point);
   const auto distance = [&](int c) { return (centre(c) - point).squaredNorm(); };
   for (int rings = 1; rings <= *std::max_element(grid.cells.begin(), grid.cells.end()); ++rings) {
@@ -116,7 +116,7 @@ int CutBody::nearest_cell(const Vec3& point) const {
           const auto here = cells_of_.find(cube_number(grid, cell_at(grid, {i, j, k})));
           if (here == cells_of_.end()) continue;
           for (const int c : here->second)
-            if (best < 0 || distance(c) < distance(best)) best = c;
+            if (cells[c].material == material && (best < 0 || distance(c) < distance(best))) best = c;
         }
     if (best >= 0) return best;
   }
@@ -137,22 +137,53 @@ CutBody::Place CutBody::place(const Vec3& point) const {
       best = cell;
     }
   }
-  if (best < 0) best = nearest_cell(point);
+  if (best < 0) best = nearest_cell(point, materials_.empty() ? 0 : materials_[tetrahedron]);
   return {best, weights(best, point)};
 }
 
 namespace {
 
-/// The cell of a part of a facet of the tetrahedron `owner`; -1: it is left out.
-int cell_of(const TriangleCorners& part, int owner, const BodyParts& parts, const BodyPieces& pieces) {
+using NearestCell = std::function<int(const Vec3& point, int material)>;
+
+Vec3 middle_of(const TriangleCorners& part, const VoxelGrid& grid) {
+  return grid.origin + grid.edge * (1.0 / 3 * part[0] + 1.0 / 3 * part[1] + 1.0 / 3 * part[2]);
+}
+
+/// The cell of a part of a facet of the tetrahedron `owner`; where it is left out the nearest of its material.
+int cell_of(const TriangleCorners& part, int owner, const BodyParts& parts, const BodyPieces& pieces,
+            const NearestCell& nearest, const VoxelGrid& grid) {
   const int p = parts.find(owner, parts.cube_beside(part, owner));
-  return p < 0 ? -1 : pieces.cell[pieces.of_part[p]];
+  const int cell = p < 0 ? -1 : pieces.cell[pieces.of_part[p]];
+  return cell >= 0 ? cell : nearest(middle_of(part, grid), parts.material(owner));
+}
+
+PatchInCell patch_in(int cell) {
+  PatchInCell patch{cell, {}, {}, {}};
+  patch.normal.fill(Vec3::Zero());
+  patch.moment.fill(Vec3::Zero());
+  return patch;
+}
+
+/// Adds the integrals over a triangle [edges of the grid].
+void add_triangle(const TriangleCorners& part, const CutBody& body, PatchInCell& to) {
+  static const std::vector<TrianglePoint> rule = triangle_points();
+  const double l = body.grid.edge;
+  const Vec3 normal = l * l * (part[1] - part[0]).cross(part[2] - part[0]) / 2;
+  for (const TrianglePoint& q : rule) {
+    const Vec3 x = body.grid.origin + l * (q.at[0] * part[0] + q.at[1] * part[1] + q.at[2] * part[2]);
+    const Vec3 from_centre = x - body.centre(to.cell);
+    const std::array<double, 8> N = body.weights(to.cell, x);
+    for (int n = 0; n < 8; ++n) {
+      const double area = q.weight * N[n] * normal.norm();
+      to.area[n] += area;
+      to.normal[n] += q.weight * N[n] * normal;
+      to.moment[n] += area * from_centre;
+    }
+  }
 }
 
 void add_patches(const Mesh& body, const BodyParts& parts, const BodyPieces& pieces, CutBody& out,
-                 const std::function<int(const Vec3&)>& nearest) {
-  static const std::vector<TrianglePoint> rule = triangle_points();
-  const double l = out.grid.edge;
+                 const NearestCell& nearest) {
   for (const Patch& patch : body.patches) {
     std::map<int, PatchInCell> in_cell;
     for (const auto& f : patch.facets) {
@@ -160,34 +191,43 @@ void add_patches(const Mesh& body, const BodyParts& parts, const BodyPieces& pie
       const int owner = parts.owner({f[0], f[1], f[2]});
       cut_by_cells_beside(parts.triangle({f[0], f[1], f[2]}), out.grid,
                           [&](const std::array<int, 3>&, const TriangleCorners& part) {
-                            const Vec3 normal = l * l * (part[1] - part[0]).cross(part[2] - part[0]) / 2;
-                            if (normal.isZero(0)) return;
-                            const auto position = [&](const std::array<double, 3>& b) -> Vec3 {
-                              return out.grid.origin + l * (b[0] * part[0] + b[1] * part[1] + b[2] * part[2]);
-                            };
-                            int cell = cell_of(part, owner, parts, pieces);
-                            if (cell < 0) cell = nearest(position({1.0 / 3, 1.0 / 3, 1.0 / 3}));
-                            auto [at, is_new] = in_cell.try_emplace(cell);
-                            if (is_new) {
-                              at->second.cell = cell;
-                              at->second.normal.fill(Vec3::Zero());
-                              at->second.moment.fill(Vec3::Zero());
-                            }
-                            for (const TrianglePoint& q : rule) {
-                              const Vec3 x = position(q.at), from_centre = x - out.centre(cell);
-                              const std::array<double, 8> N = out.weights(cell, x);
-                              for (int n = 0; n < 8; ++n) {
-                                const double area = q.weight * N[n] * normal.norm();
-                                at->second.area[n] += area;
-                                at->second.normal[n] += q.weight * N[n] * normal;
-                                at->second.moment[n] += area * from_centre;
-                              }
-                            }
+                            if ((part[1] - part[0]).cross(part[2] - part[0]).isZero(0)) return;
+                            const int cell = cell_of(part, owner, parts, pieces, nearest, out.grid);
+                            add_triangle(part, out, in_cell.try_emplace(cell, patch_in(cell)).first->second);
                           });
     }
     auto& list = out.patches[patch.name];
     for (auto& [cell, piece] : in_cell) list.push_back(piece);
   }
+}
+
+/// The cells on both sides of a part of an interface; -1: what is left out there has no cell of its material beside it.
+std::array<int, 2> cells_beside(const BodyParts::Interface& part, const BodyPieces& pieces, const CutBody& body,
+                                const NearestCell& nearest) {
+  constexpr double beside = 1.5;  // edges from the centre of the cube
+  const Vec3 middle = middle_of(part.triangle, body.grid);
+  std::array<int, 2> cells;
+  for (int side = 0; side < 2; ++side) {
+    const int piece = pieces.of_part[part.parts[side]];
+    cells[side] = pieces.cell[piece];
+    if (cells[side] >= 0) continue;
+    const int near = nearest(middle, pieces.material[piece]);
+    const double edge = body.grid.edge * body.cells[near].size;
+    if ((body.centre(near) - middle).cwiseAbs().maxCoeff() <= beside * edge) cells[side] = near;
+  }
+  return cells;
+}
+
+void add_interfaces(const BodyParts& parts, const BodyPieces& pieces, CutBody& out, const NearestCell& nearest) {
+  std::map<std::array<int, 2>, InterfaceInCells> between;
+  for (const BodyParts::Interface& part : parts.interfaces) {
+    const std::array<int, 2> cells = cells_beside(part, pieces, out, nearest);
+    if (cells[0] < 0 || cells[1] < 0) continue;
+    const InterfaceInCells none{{patch_in(cells[0]), patch_in(cells[1])}};
+    for (PatchInCell& side : between.try_emplace(cells, none).first->second.sides)
+      add_triangle(part.triangle, out, side);
+  }
+  for (const auto& [cells, interface] : between) out.interfaces.push_back(interface);
 }
 
 /// A corner of parts of the surface in a cell.
@@ -217,7 +257,7 @@ std::vector<SurfaceCorner> farthest(const std::vector<SurfaceCorner>& corners) {
 /// The corners of the parts of the surface, cell by cell.
 std::map<int, std::vector<SurfaceCorner>> surface_corners(const Mesh& body, const BodyParts& parts,
                                                           const BodyPieces& pieces, const CutBody& out,
-                                                          const std::function<int(const Vec3&)>& nearest) {
+                                                          const NearestCell& nearest) {
   std::map<int, std::vector<SurfaceCorner>> in_cell;
   for (const OuterFacet& f : outer_facets(body)) {
     const std::array<int, 3> nodes = {f.nodes[0], f.nodes[1], f.nodes[2]};
@@ -226,8 +266,7 @@ std::map<int, std::vector<SurfaceCorner>> surface_corners(const Mesh& body, cons
     Vec3 normal = (facet[1] - facet[0]).cross(facet[2] - facet[0]).normalized();
     if (normal.dot(out.grid.origin + out.grid.edge * facet[0] - f.cell_centre) < 0) normal = -normal;
     cut_by_cells_beside(facet, out.grid, [&](const std::array<int, 3>&, const TriangleCorners& part) {
-      int cell = cell_of(part, owner, parts, pieces);
-      if (cell < 0) cell = nearest(out.grid.origin + out.grid.edge * (part[0] + part[1] + part[2]) / 3);
+      const int cell = cell_of(part, owner, parts, pieces, nearest, out.grid);
       std::vector<SurfaceCorner>& corners = in_cell[cell];
       for (const Vec3& x : part) {
         auto known = std::find_if(corners.begin(), corners.end(), [&](const SurfaceCorner& c) {
@@ -244,7 +283,7 @@ std::map<int, std::vector<SurfaceCorner>> surface_corners(const Mesh& body, cons
 
 /// Points of the surface that are `apart` from each other, in parts that are connected; edges and corners first.
 void add_surface(const Mesh& body, const BodyParts& parts, const BodyPieces& pieces, CutBody& out,
-                 const std::function<int(const Vec3&)>& nearest) {
+                 const NearestCell& nearest) {
   constexpr double apart = 0.3;
   std::vector<SurfaceCorner> all;
   for (const auto& [cell, corners] : surface_corners(body, parts, pieces, out, nearest))
@@ -304,6 +343,15 @@ void check_in_grid(const VoxelGrid& grid, const Mesh& body) {
     }
 }
 
+void require_cells_of_all_materials(const Mesh& body, const CutBody& cut) {
+  std::set<int> missing(body.materials.begin(), body.materials.end());
+  for (const CutCell& c : cut.cells) missing.erase(c.material);
+  if (!missing.empty())
+    throw std::invalid_argument(fmt::format(
+        "voxels: material {} of the body fills less than 1/1000 of every cube of {:.6g} m; take smaller voxels",
+        *missing.begin(), cut.grid.edge));
+}
+
 }  // namespace
 
 CutBody cut_body(const VoxelGrid& grid, const Mesh& body) {
@@ -323,8 +371,9 @@ CutBody cut_body(const VoxelGrid& grid, const Mesh& body) {
     if (pieces.cell[p] < 0) continue;
     const std::array<int, 3> at = parts.index(pieces.cube[p]);
     const int size = parts.size(pieces.cube[p]);
-    out.cells[pieces.cell[p]] = {at, {}, part_in_cell(pieces.moments[p], at, size), size};
+    out.cells[pieces.cell[p]] = {at, {}, part_in_cell(pieces.moments[p], at, size), size, pieces.material[p]};
   }
+  require_cells_of_all_materials(body, out);
   for (std::size_t c = 0; c < out.cells.size(); ++c)
     out.cells_of_[cube_number(grid, out.cells[c].index)].push_back(static_cast<int>(c));
   number_points(pieces, out);
@@ -332,8 +381,10 @@ CutBody cut_body(const VoxelGrid& grid, const Mesh& body) {
   out.part_begin_ = parts.begin;
   for (std::size_t p = 0; p < parts.cube.size(); ++p)
     out.part_.emplace_back(parts.cube[p], pieces.cell[pieces.of_part[p]]);
-  const auto nearest = [&](const Vec3& x) { return out.nearest_cell(x); };
+  out.materials_ = body.materials;
+  const auto nearest = [&](const Vec3& x, int material) { return out.nearest_cell(x, material); };
   add_patches(body, parts, pieces, out, nearest);
+  add_interfaces(parts, pieces, out, nearest);
   add_surface(body, parts, pieces, out, nearest);
   if (left_out > noted_loss)
     out.notes.push_back(

@@ -22,6 +22,7 @@ struct CutCell {
                              ///< connected outside it
   FilledPart filled;         ///< what the body fills of the cube
   int size = 1;              ///< edge of the cube, in edges of the grid
+  int material = 0;          ///< of Mesh::materials
 };
 
 /// The part of a patch in one cell, by the trilinear weights N_a of the cell's corners.
@@ -32,6 +33,11 @@ struct PatchInCell {
   std::array<Vec3, 8> moment;    ///< integral of N_a (x - c), c the centre of the cell's cube [m^3]
 
   double total_area() const;  ///< [m^2]
+};
+
+/// The part of the interface of two materials between two cells, as a patch of each of them.
+struct InterfaceInCells {
+  std::array<PatchInCell, 2> sides;  ///< normals of both from the first to the second, which has the larger material
 };
 
 /// A point of the body's surface.
@@ -48,6 +54,7 @@ class CutBody {
   std::vector<CarriedPoint> carried;                        ///< those in edges and faces of larger cells
   std::vector<CutCell> cells;                               ///< by layers: x fastest, then y, then z
   std::map<std::string, std::vector<PatchInCell>> patches;  ///< by name
+  std::vector<InterfaceInCells> interfaces;                 ///< within cubes, by the cells of their sides
   /// Corners of the body, and where it meets edges of the lattice: of the parts of the surface in each cell the corners
   /// that lie farthest out, as seen along the faces, edges and corners of a cube, but for those that are less than 0.3
   /// of an edge from another.
@@ -68,8 +75,9 @@ class CutBody {
 
  private:
   friend CutBody cut_body(const VoxelGrid& grid, const Mesh& body);
-  int nearest_cell(const Vec3& point) const;
+  int nearest_cell(const Vec3& point, int material) const;
 
+  std::vector<std::uint8_t> materials_;  ///< of the tetrahedra; empty: one
   std::shared_ptr<const TetrahedronLocator> locator_;
   std::vector<int> part_begin_;                ///< per tetrahedron, then the end
   std::vector<std::pair<long, int>> part_;     ///< cube and cell (-1: left out) of each part of a tetrahedron
@@ -79,8 +87,13 @@ class CutBody {
 /// Cuts the tetrahedra of a body by the planes of the grid: the moments of all parts are exact to round-off, and so are
 /// the integrals over its patches.  Parts of less than 1/1000 of a cube are left out, and what is connected with the
 /// rest of the body only through them; the patches there are attached to the nearest cell.
-/// @throws std::invalid_argument if the body has no tetrahedra or reaches out of the grid, or if more than 2 % of its
-///   volume would be left out.
+///
+/// Each material is cut as a body of its own: where two share a cube it holds a cell of each, with corners of their
+/// own, and the interface between them.  Where an interface lies in a plane of the lattice the cells on both sides
+/// share corners, as those of one material do.
+/// @throws std::invalid_argument if the body has no tetrahedra or reaches out of the grid, if a material has no cell,
+/// or
+///   if more than 2 % of the volume would be left out.
 CutBody cut_body(const VoxelGrid& grid, const Mesh& body);
 
 }  // namespace springproof

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "meshes/locate/tetrahedron_locator.h"
 #include "meshes/patches/transfer_patches.h"
 #include "meshes/voxels/scan_lines.h"
 
@@ -222,6 +223,16 @@ class CubeMesh {
   Mesh mesh_;
 };
 
+/// Materials of cubes by those of a body of tetrahedra at their middles.
+std::vector<std::uint8_t> materials_at_middles(const Mesh& cubes, const Mesh& body) {
+  const TetrahedronLocator locate(body.nodes, body.tetrahedra);
+  std::vector<std::uint8_t> materials;
+  for (const Hexahedron& cube : cubes.hexahedra)
+    materials.push_back(
+        body.materials[locate((cubes.nodes.row(cube[0]) + cubes.nodes.row(cube[6])).transpose() / 2).cell]);
+  return materials;
+}
+
 }  // namespace
 
 int cell_size(const VoxelGrid& grid, const std::array<int, 3>& cube) {
@@ -269,6 +280,7 @@ Voxels voxelise(const VoxelGrid& grid, const Mesh& body) {
   Voxels voxels;
   keep_one_piece(runs, grid, voxels.notes);
   voxels.mesh = CubeMesh(grid, runs).build();
+  if (!body.materials.empty()) voxels.mesh.materials = materials_at_middles(voxels.mesh, body);
   for (const std::string& name : transfer_patches(body, facets, voxels.mesh))
     voxels.notes.push_back(fmt::format(
         "patch '{}' is smaller than the cubes' faces of {:.6g} m: one of them stands for it", name, grid.edge));

@@ -128,6 +128,9 @@ std::vector<std::vector<int>> coupled_nodes(const Network& network) {
     coupled[anchor.node].insert(coupled[anchor.node].end(), anchor.corners.begin(), anchor.corners.end());
     for (int a : anchor.corners) coupled[a].push_back(anchor.node);
   }
+  for (const InterfaceBond& bond : network.bonds)
+    for_each_corner(bond,
+                    [&](int a, double) { for_each_corner(bond, [&](int b, double) { coupled[a].push_back(b); }); });
   for (const auto& triangle : network.triangles)
     for (int a : triangle) coupled[a].insert(coupled[a].end(), triangle.begin(), triangle.end());
   sort_unique(coupled);

@@ -62,7 +62,8 @@ class BlockMatrix {
   Carriers carriers_;  ///< empty: no point is carried
 };
 
-/// For each node of a network the nodes that share a spring, a triangle or a cell with it, itself included, ascending.
+/// For each node of a network the nodes that share a spring, a triangle, a cell or a bond with it, itself included,
+/// ascending.
 std::vector<std::vector<int>> coupled_nodes(const Network& network);
 
 /// The pattern of the points that carry the others; a carried point couples to itself.

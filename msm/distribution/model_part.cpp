@@ -93,6 +93,7 @@ std::array<int, 9> nodes_of_anchor(const Anchor& a) {
 
 ModelPart part_of(const MassSpringModel& whole, const std::vector<char>& own_nodes) {
   if (!whole.network.image_of.empty()) throw std::invalid_argument("a periodic network is not parted");
+  if (!whole.network.cells.materials.empty()) throw std::invalid_argument("a body of several materials is not parted");
   if (!can(whole, Capability::energy))
     throw std::invalid_argument("its forces have no energy, so its stiffness is not symmetric");
   if (const MomentumDispersion* dispersion = dispersion_of(whole);

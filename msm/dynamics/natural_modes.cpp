@@ -113,7 +113,9 @@ Eigen::SparseMatrix<double> mass_matrix(const Network& network, double density, 
   const Carriers carriers = carriers_of(network.nodes(), network.cells.carried);
   for (std::size_t c = 0; c < network.cells.size(); ++c) {
     const Hexahedron& cell = network.cells.corners[c];
-    const auto C = consistent_mass(network.cells.part(c), density * std::pow(network.cells.edge_of(c), 3));
+    const std::vector<double>& of = network.cells.relative_densities;
+    const double own = of.empty() ? density : density * of[network.cells.material(c)];
+    const auto C = consistent_mass(network.cells.part(c), own * std::pow(network.cells.edge_of(c), 3));
     for (int a = 0; a < 8; ++a)
       for_each_carrier(carriers, cell[a], [&](int i, double v) {
         entries.emplace_back(i, i, (1 - theta) * v * C.row(a).sum());

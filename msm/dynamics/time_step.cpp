@@ -139,7 +139,21 @@ double cell_frequency_squared(const CellMatrix& K, double full, double theta) {
   return std::min(symmetric_eigenvalues(K, full / 8 * M)[23], MassAverage::largest_gain(theta) * lumped);
 }
 
-/// By cells: no squared frequency is above the largest that a cell has alone, with any shares of its
+/// Weights of the nodes that carry the corners of a bond.
+std::map<int, double> weights_of(const InterfaceBond& bond, const Carriers& carriers) {
+  std::map<int, double> weights;
+  for_each_corner(bond, [&](int n, double w) {
+    for_each_carrier(carriers, n, [&](int p, double share) { weights[p] += w * share; });
+  });
+  std::erase_if(weights, [](const auto& at) { return std::abs(at.second) < 1e-9; });
+  return weights;
+}
+
+double largest_stiffness(const InterfaceBond& bond) {
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(bond.stiffness).eigenvalues()[2];
+}
+
+/// By cells, and bonds as such: no squared frequency is above the largest that a cell has alone, with any shares of its
 /// nodes' masses that add up over the cells of a node (Irons and Treharne).  A cell's share is in proportion to its own
 /// stiffness at the node; in a second round times the frequency that it then has.  The nodes of a cell with carried
 /// corners are those that carry them.
@@ -152,12 +166,26 @@ class CellFrequencies {
         nodes_(network.cells.size()),
         weight_(network.cells.size()) {
     const Carriers carriers = carriers_of(network.nodes(), network.cells.carried);
-    for (std::size_t c = 0; c < weight_.size(); ++c) {
+    for (std::size_t c = 0; c < network.cells.size(); ++c) {
       find_nodes(c, carriers);
       const Eigen::MatrixXd K = stiffness(c);
       for (std::size_t n = 0; n < nodes_[c].size(); ++n) {
         const auto at = 3 * static_cast<Eigen::Index>(n);
         weight_[c].push_back(K.diagonal().segment<3>(at).sum());
+      }
+    }
+  }
+
+  void add_bonds() {
+    const Carriers carriers = carriers_of(network_.nodes(), network_.cells.carried);
+    for (const InterfaceBond& bond : network_.bonds) {
+      nodes_.emplace_back();
+      weight_.emplace_back();
+      bonds_.push_back({largest_stiffness(bond), {}});
+      for (const auto& [node, w] : weights_of(bond, carriers)) {
+        nodes_.back().push_back(node);
+        weight_.back().push_back(bond.stiffness.trace() * w * w);
+        bonds_.back().squares.push_back(w * w);
       }
     }
   }
@@ -171,11 +199,17 @@ class CellFrequencies {
     double largest = 0;
     for (std::size_t c = 0; c < weight_.size(); ++c) {
       std::vector<double> share;
-      std::vector<float> key = {static_cast<float>(network_.cells.edge_of(c))};
-      for (std::size_t n = 0; n < nodes_[c].size(); ++n) {
+      for (std::size_t n = 0; n < nodes_[c].size(); ++n)
         share.push_back(mass_[nodes_[c][n]] * weight_[c][n] / total[nodes_[c][n]]);
-        key.push_back(static_cast<float>(share.back()));
+      if (c >= network_.cells.size()) {
+        const double own = bonds_[c - network_.cells.size()].alone(share);
+        largest = std::max(largest, own);
+        for (double& w : weight_[c]) w *= std::sqrt(own);
+        continue;
       }
+      std::vector<float> key = {static_cast<float>(network_.cells.edge_of(c)),
+                                static_cast<float>(network_.cells.material(c))};
+      for (const double s : share) key.push_back(static_cast<float>(s));
       const bool full = cells_.full_alike && network_.cells.is_full(c) && !through_.contains(c);
       const auto known = full ? of_full.find(key) : of_full.end();
       const double own = known != of_full.end() ? known->second : alone(c, share);
@@ -226,16 +260,30 @@ class CellFrequencies {
     return values[values.size() - 1];
   }
 
+  struct Alone {
+    double stiffness;             ///< largest [N/m]
+    std::vector<double> squares;  ///< of the weights of its nodes
+
+    double alone(const std::vector<double>& share) const {
+      double sum = 0;
+      for (std::size_t n = 0; n < share.size(); ++n) sum += squares[n] / share[n];
+      return stiffness * sum;
+    }
+  };
+
   StiffnessOfCells cells_;
   const Network& network_;
   const Eigen::VectorXd& mass_;
-  std::vector<std::vector<int>> nodes_;             ///< of each cell
+  std::vector<Alone> bonds_;
+  std::vector<std::vector<int>> nodes_;             ///< of each cell, then of each bond
   std::vector<std::vector<double>> weight_;         ///< of a cell in the mass of its nodes
   std::map<std::size_t, Eigen::MatrixXd> through_;  ///< corners from nodes, 24 x 3 nodes; cells with carried corners
 };
 
-double frequency_squared_of_cells(const StiffnessOfCells& of, const Network& network, const Eigen::VectorXd& mass) {
+double frequency_squared_of_cells(const StiffnessOfCells& of, const Network& network, const Eigen::VectorXd& mass,
+                                  bool bonded = false) {
   CellFrequencies cells(of, network, mass);
+  if (bonded) cells.add_bonds();
   const double first = cells.round();
   return std::min(first, cells.round());
 }
@@ -256,14 +304,16 @@ double safe_time_step(const MassSpringModel& model, double density, bool lagged,
     largest += cell_frequency_squared(cell.total, density * cell.volume, theta);
   }
   if (averaged) {  // the smaller of two bounds
-    const bool full = theta > 0 && !network.cells.cut();
+    const bool full = theta > 0 && !network.cells.cut(), bonded = !network.bonds.empty() && law_of<Anchors>(model);
     largest += full ? cell_frequency_squared(averaged->cell_matrix(network.cells.full()),
                                              density * network.cells.volume(), theta)
                     : gain * frequency_squared_of_cells(
                                  {[&](std::size_t c) { return averaged->cell_matrix(network.cells.shape(c)); }, true},
-                                 network, mass);
-    add_norms(network, mass, *averaged, blocks);
-    largest = std::min(largest, gain * largest_eigenvalue(blocks));
+                                 network, mass, bonded);
+    if (!bonded) {
+      add_norms(network, mass, *averaged, blocks);
+      largest = std::min(largest, gain * largest_eigenvalue(blocks));
+    }
   }
   if (const auto* measured = law_of<MeasuredCells>(model)) {
     largest +=
@@ -273,6 +323,33 @@ double safe_time_step(const MassSpringModel& model, double density, bool lagged,
     largest = std::min(largest, gain * largest_eigenvalue(blocks));
   }
   return 2 / std::sqrt(largest);
+}
+
+void soften_bonds(MassSpringModel& model, double density) {
+  constexpr double share_of_cells = 0.25;
+  Network& network = model.network;
+  const AveragedSprings* law = averaged_springs_of(model);
+  if (network.bonds.empty() || !law) return;
+  const Eigen::VectorXd mass = masses(network, density);
+  const Carriers carriers = carriers_of(network.nodes(), network.cells.carried);
+  std::map<Hexahedron, std::size_t> cell_of;
+  for (std::size_t c = 0; c < network.cells.size(); ++c) cell_of[network.cells.corners[c]] = c;
+  const auto full_cell = [&](const Hexahedron& corners) {
+    CellShape cell = network.cells.shape(cell_of.at(corners));
+    cell.part = {};
+    const double of_material = network.cells.relative_densities[cell.material];
+    return cell_frequency_squared(law->cell_matrix(cell), density * of_material * cell.volume(), 0);
+  };
+  std::map<std::array<Hexahedron, 2>, double> together;  // squared frequencies of the bonds of two cells
+  for (InterfaceBond& bond : network.bonds) {
+    const double softest = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(bond.stiffness).eigenvalues()[0];
+    bond.stiffness = softest * Eigen::Matrix3d::Identity();
+    for (const auto& [node, w] : weights_of(bond, carriers)) together[bond.corners] += softest * w * w / mass[node];
+  }
+  for (InterfaceBond& bond : network.bonds) {
+    const double cells = std::max(full_cell(bond.corners[0]), full_cell(bond.corners[1]));
+    bond.stiffness *= std::min(1.0, share_of_cells * cells / together.at(bond.corners));
+  }
 }
 
 double viscous_time_step(const MassSpringModel& model, double density, const Viscosity& viscosity, double elastic,

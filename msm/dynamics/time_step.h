@@ -15,6 +15,7 @@ namespace springproof {
 ///  - volume and hourglass corrections of a lattice of equal cells: with the springs, the stiffest single cell (Irons
 ///    and Treharne);
 ///  - averaged springs, in whole or cut cells: the stiffest cell alone, or the norms of the blocks, whichever is less;
+///    where bonds tie the cells (InterfaceBond), the stiffest cell or bond alone;
 ///  - anchors: nothing, as the nodes at them have a support mass (inertia.h);
 ///  - any other law: the norms of the 3x3 blocks of its stiffness.
 /// With a share theta of consistent mass (MassAverage) all of it grows by its largest gain, or for full cells the
@@ -31,6 +32,13 @@ namespace springproof {
 /// @return [s]
 /// @throws std::invalid_argument if a node has no mass.
 double safe_time_step(const MassSpringModel& model, double density, bool lagged = false, double theta = 0);
+
+/// Softens the bonds of a model for explicit motion, so that its step is four fifths or more of that of its full cells:
+/// those of two cells together to K <= w^2/4 / sum_a w_a^2/m_a, w the largest frequency of a full cell of the stiffer
+/// of their materials; and the same across the interface as along it, so that they keep both momenta at any rotation.
+/// @param model of several materials; with none it stays as it is
+/// @param density of the body's own material [kg/m^3]
+void soften_bonds(MassSpringModel& model, double density);
 
 /// Largest safe step [s] of explicit integration whose viscous forces are those of the velocity half a step before:
 /// (sqrt(c^2 + 4 w^2) - c) / w^2, with bounds w^2 on the squared frequencies and c on what viscosity adds.

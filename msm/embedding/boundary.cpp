@@ -190,7 +190,7 @@ NodalVectors network_forces(const std::vector<Load>& loads, const Mesh& mesh, co
   for (const Load& load : loads) {
     const auto* gravity = std::get_if<Gravity>(&load);
     if (gravity && e.free_fall)
-      external += factor * density * network.volume * gravity->acceleration.transpose();
+      external += factor * density * volumes_by_mass(network) * gravity->acceleration.transpose();
     else if (const auto forces = e.patches.empty() ? std::nullopt : true_forces(load, e, network.X, density, factor))
       external += *forces;
     else

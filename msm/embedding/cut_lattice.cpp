@@ -41,15 +41,29 @@ double weight_of_corner(const FilledPart& part, int corner) {
   return part.fraction * (0.125 + s.dot(part.mean) / 4 + mixed / 2);
 }
 
+/// The materials of the cells, their densities, and the bonds between them.
+void add_materials(const CutBody& body, const std::vector<IsotropicMaterial>& materials, Network& network) {
+  for (const CutCell& cell : body.cells) network.cells.materials.push_back(static_cast<std::uint8_t>(cell.material));
+  for (const IsotropicMaterial& m : materials)
+    network.cells.relative_densities.push_back(m.density / materials[0].density);
+  network.bonds = bonds_of_interfaces(body, materials);
+}
+
 }  // namespace
 
 Network cut_lattice(const CutBody& body, const std::vector<std::string>& held, double youngs_modulus) {
+  return cut_lattice(body, held, std::vector<IsotropicMaterial>{{youngs_modulus, 0, 1}});
+}
+
+Network cut_lattice(const CutBody& body, const std::vector<std::string>& held,
+                    const std::vector<IsotropicMaterial>& materials) {
+  require_materials(body, materials.size());
   Network network;
   const double l = body.grid.edge;
   network.cells.edge = l;
   const auto corners = body.points.rows();
   for (const std::string& name : held)
-    for (Anchor& anchor : anchors_of_patch(body, name, youngs_modulus)) {
+    for (Anchor& anchor : anchors_of_patch(body, name, materials)) {
       anchor.node = static_cast<int>(corners) + static_cast<int>(network.anchors.size());
       network.anchors.push_back(anchor);
     }
@@ -67,6 +81,7 @@ Network cut_lattice(const CutBody& body, const std::vector<std::string>& held, d
   network.cells.carried = body.carried;
   hand_back(network.cells.carried, network.volume, 1);
   if (body.grid.doubled.empty()) network.cells.edges.clear();
+  if (materials.size() > 1) add_materials(body, materials, network);
   return network;
 }
 
@@ -101,7 +116,8 @@ Embedding embed(const CutBody& body, const std::vector<std::string>& held, const
   e.surface = surface_weights(body, network.X.rows());
   e.volumes = Eigen::VectorXd::Zero(network.X.rows());
   for (const CutCell& cell : body.cells) {
-    const double volume = std::pow(body.grid.edge * cell.size, 3);
+    const std::vector<double>& densities = network.cells.relative_densities;
+    const double volume = std::pow(body.grid.edge * cell.size, 3) * (densities.empty() ? 1 : densities[cell.material]);
     for (int n = 0; n < 8; ++n) e.volumes[cell.corners[n]] += volume * weight_of_corner(cell.filled, n);
   }
   for (const auto& [name, parts] : body.patches) {

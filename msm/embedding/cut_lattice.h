@@ -6,6 +6,7 @@
 
 #include "meshes/voxels/cut_cells.h"
 #include "msm/embedding/embedding.h"
+#include "problem/material.h"
 
 namespace springproof {
 
@@ -14,8 +15,15 @@ namespace springproof {
 /// `youngs_modulus` [Pa]: of the body, for the anchors.
 Network cut_lattice(const CutBody& body, const std::vector<std::string>& held, double youngs_modulus);
 
+/// The same of a body of several materials, with its bonds (supports.h).
+/// `materials`: of the cells, by their number.
+/// @throws std::invalid_argument if a cell has another material.
+Network cut_lattice(const CutBody& body, const std::vector<std::string>& held,
+                    const std::vector<IsotropicMaterial>& materials);
+
 /// Embedding in that network of a mesh in the body: the nodes of a cube of the mesh follow the cell that holds the
-/// cube's middle.  Loads are integrals over the true body and its patches.
+/// cube's middle.  Loads are integrals over the true body and its patches; a part of another density than the body's
+/// own counts in volumes by its mass.
 Embedding embed(const CutBody& body, const std::vector<std::string>& held, const Network& network, const Mesh& mesh);
 
 /// Displacement of the network at points of the body [m].

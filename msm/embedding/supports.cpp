@@ -1,15 +1,21 @@
 #include "msm/embedding/supports.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numbers>
+#include <numeric>
+#include <stdexcept>
 
 namespace springproof {
 namespace {
 
-constexpr double least_spread = 1e-6;  // of an edge: below it the quotient of moments is round-off
+constexpr double least_spread = 1e-6;    // of an edge: below it the quotient of moments is round-off
+constexpr double confined_above = 0.45;  // Poisson's ratio from which bonds are stiffer across an interface
 
 /// The part of a patch in a cell as a plate: moments of its area, of the first and second order.
 struct Part {
@@ -56,22 +62,35 @@ struct SharedMoments {
   }
 };
 
-/// The rows G of a part, 2 x 8, from the numbers of the parts at its cell's nodes.
-Eigen::Matrix<double, 2, 8> moment_rows(const std::vector<Part>& parts, int number, const std::vector<int>& near,
-                                        double edge) {
-  const Part& part = parts[number];
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(part.second);  // ascending
-  const Eigen::Matrix<double, 3, 2> plane = axes.eigenvectors().rightCols<2>();
-  const Eigen::Vector2d spread = axes.eigenvalues().tail<2>().cwiseMax(0).cwiseSqrt();
-  Eigen::Vector2d inverse;
-  for (int j = 0; j < 2; ++j) inverse[j] = spread[j] > least_spread * edge ? 1 / (spread[j] * spread[j]) : 0;
-  SharedMoments moments(parts, near, plane);
-  moments.common += std::pow(least_spread * edge, 2) * Eigen::Matrix2d::Identity();
-  const Eigen::Matrix2d gain = spread.asDiagonal() * moments.common.inverse() * moments.own * inverse.asDiagonal();
-  Eigen::Matrix<double, 2, 8> G;
-  for (int n = 0; n < 8; ++n) G.col(n) = gain * (plane.transpose() * part.first[n]);
-  return G;
-}
+/// What the moments of a part are held by: the rows G are gain T^T R_a.
+struct Gain {
+  Eigen::Matrix<double, 3, 2> plane;
+  Eigen::Matrix2d gain;
+
+  /// From the numbers of the parts at its cell's nodes.
+  Gain(const std::vector<Part>& parts, int number, const std::vector<int>& near, double edge) {
+    const Part& part = parts[number];
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(part.second);  // ascending
+    plane = axes.eigenvectors().rightCols<2>();
+    const Eigen::Vector2d spread = axes.eigenvalues().tail<2>().cwiseMax(0).cwiseSqrt();
+    Eigen::Vector2d inverse;
+    for (int j = 0; j < 2; ++j) inverse[j] = spread[j] > least_spread * edge ? 1 / (spread[j] * spread[j]) : 0;
+    SharedMoments moments(parts, near, plane);
+    moments.common += std::pow(least_spread * edge, 2) * Eigen::Matrix2d::Identity();
+    gain = spread.asDiagonal() * moments.common.inverse() * moments.own * inverse.asDiagonal();
+  }
+
+  /// Weights of the corners of the cell of a part in its spring number q.
+  std::array<double, 8> weights(const Part& part, std::size_t q) const {
+    const double theta = 2 * std::numbers::pi * static_cast<double>(q) / anchors_of_part;
+    std::array<double, 8> w;
+    for (int n = 0; n < 8; ++n) {
+      const Eigen::Vector2d G = gain * (plane.transpose() * part.first[n]);
+      w[n] = part.of.area[n] / part.area + std::numbers::sqrt2 * (std::cos(theta) * G[0] + std::sin(theta) * G[1]);
+    }
+    return w;
+  }
+};
 
 /// Per part, those that have a corner of its cell, itself among them.
 std::vector<std::vector<int>> parts_nearby(const std::vector<Part>& parts) {
@@ -87,9 +106,36 @@ std::vector<std::vector<int>> parts_nearby(const std::vector<Part>& parts) {
   return near;
 }
 
+double harmonic_mean(double a, double b) { return 2 / (1 / a + 1 / b); }
+
+/// Of an interface between two materials, times the edge of the cell [N].
+Eigen::Matrix3d bond_stiffness(const Part& part, const IsotropicMaterial& a, const IsotropicMaterial& b) {
+  const auto across = [](const IsotropicMaterial& m) { return lame_lambda(m) + 2 * shear_modulus(m); };
+  const double along = harmonic_mean(a.youngs_modulus, b.youngs_modulus);
+  Eigen::Matrix3d K = along * Eigen::Matrix3d::Identity();
+  if (std::max(a.poisson_ratio, b.poisson_ratio) > confined_above) {
+    const Vec3 normal = std::accumulate(part.of.normal.begin(), part.of.normal.end(), Vec3(0, 0, 0)) / part.area;
+    K += (harmonic_mean(across(a), across(b)) - along) * normal * normal.transpose();
+  }
+  return anchor_stiffness * part.area * K;
+}
+
 }  // namespace
 
+void require_materials(const CutBody& body, std::size_t materials) {
+  for (const CutCell& cell : body.cells)
+    if (static_cast<std::size_t>(cell.material) >= materials)
+      throw std::invalid_argument(fmt::format("the body has a material of number {}; {} {} given", cell.material,
+                                              materials, materials == 1 ? "material is" : "materials are"));
+}
+
 std::vector<Anchor> anchors_of_patch(const CutBody& body, const std::string& patch, double youngs_modulus) {
+  return anchors_of_patch(body, patch, std::vector<IsotropicMaterial>{{youngs_modulus, 0, 1}});
+}
+
+std::vector<Anchor> anchors_of_patch(const CutBody& body, const std::string& patch,
+                                     const std::vector<IsotropicMaterial>& materials) {
+  require_materials(body, materials.size());
   std::vector<Part> parts;
   for (const PatchInCell& p : body.patches.at(patch)) parts.emplace_back(body, p);
   const std::vector<std::vector<int>> near = parts_nearby(parts);
@@ -97,19 +143,39 @@ std::vector<Anchor> anchors_of_patch(const CutBody& body, const std::string& pat
   for (std::size_t p = 0; p < parts.size(); ++p) {
     const Part& part = parts[p];
     const double edge = body.grid.edge * part.cell.size;
-    const Eigen::Matrix<double, 2, 8> G = moment_rows(parts, static_cast<int>(p), near[p], edge);
+    const Gain gain(parts, static_cast<int>(p), near[p], edge);
     for (std::size_t q = 0; q < anchors_of_part; ++q) {
-      const double theta = 2 * std::numbers::pi * static_cast<double>(q) / anchors_of_part;
       Anchor& anchor = anchors.emplace_back();
       anchor.corners = part.cell.corners;
       anchor.node = -1;
-      anchor.stiffness = anchor_stiffness / anchors_of_part * youngs_modulus * part.area / edge;
-      for (int n = 0; n < 8; ++n)
-        anchor.weights[n] =
-            part.of.area[n] / part.area + std::numbers::sqrt2 * (std::cos(theta) * G(0, n) + std::sin(theta) * G(1, n));
+      anchor.stiffness =
+          anchor_stiffness / anchors_of_part * materials[part.cell.material].youngs_modulus * part.area / edge;
+      anchor.weights = gain.weights(part, q);
     }
   }
   return anchors;
+}
+
+std::vector<InterfaceBond> bonds_of_interfaces(const CutBody& body, const std::vector<IsotropicMaterial>& materials) {
+  std::array<std::vector<Part>, 2> parts;
+  for (const InterfaceInCells& i : body.interfaces)
+    for (int side = 0; side < 2; ++side) parts[side].emplace_back(body, i.sides[side]);
+  const std::vector<std::vector<int>> near[2] = {parts_nearby(parts[0]), parts_nearby(parts[1])};
+  std::vector<InterfaceBond> bonds;
+  for (std::size_t p = 0; p < body.interfaces.size(); ++p) {
+    const Part &first = parts[0][p], &second = parts[1][p];
+    std::vector<int> either;
+    std::set_union(near[0][p].begin(), near[0][p].end(), near[1][p].begin(), near[1][p].end(),
+                   std::back_inserter(either));
+    const double edge = body.grid.edge * std::max(first.cell.size, second.cell.size);
+    const Gain gain(parts[0], static_cast<int>(p), either, edge);
+    const Eigen::Matrix3d K = bond_stiffness(first, materials[first.cell.material], materials[second.cell.material]);
+    for (std::size_t q = 0; q < anchors_of_part; ++q)
+      bonds.push_back({{first.cell.corners, second.cell.corners},
+                       {gain.weights(first, q), gain.weights(second, q)},
+                       K / (edge * anchors_of_part)});
+  }
+  return bonds;
 }
 
 }  // namespace springproof

@@ -1,4 +1,4 @@
-// Springs by which a support holds a patch of a cut body.
+// Springs by which a support holds a patch of a cut body, and by which its materials hold each other.
 #pragma once
 
 #include <string>
@@ -6,6 +6,7 @@
 
 #include "meshes/voxels/cut_cells.h"
 #include "msm/topology/network.h"
+#include "problem/material.h"
 
 namespace springproof {
 
@@ -15,6 +16,9 @@ namespace springproof {
 inline constexpr double anchor_stiffness = 30;
 
 inline constexpr std::size_t anchors_of_part = 3;
+
+/// @throws std::invalid_argument if a cell of the body has another material than these many.
+void require_materials(const CutBody& body, std::size_t materials);
 
 /// Anchors of a patch, three for its part in each cell, in that order.  With R_a the integral of N_a (x - c) over the
 /// part of area A and centroid c, over A, and W the second moments of its area in the plane of their two larger
@@ -32,5 +36,18 @@ inline constexpr std::size_t anchors_of_part = 3;
 /// @return anchors without a node (-1)
 /// @throws std::out_of_range if the body has no such patch
 std::vector<Anchor> anchors_of_patch(const CutBody& body, const std::string& patch, double youngs_modulus);
+/// The same of a body of several materials, each cell with the modulus of its own.
+std::vector<Anchor> anchors_of_patch(const CutBody& body, const std::string& patch,
+                                     const std::vector<IsotropicMaterial>& materials);
+
+/// Bonds of the interfaces of a body, three for each pair of cells that have one: an anchor's rows m and G of both
+/// cells, where the parts of the interface that count for the share are those at nodes of either cell.  Their stiffness
+/// together is 30 A/l (E_h 1 + (M_h - E_h) n n^T), l the edge of the larger cell, E_h the harmonic mean of the moduli,
+/// n the mean normal; M_h, that of lambda + 2 G, replaces E_h across the interface if one of the materials has a
+/// Poisson's ratio above 0.45.
+/// @param body a body in cells
+/// @param materials of its cells, by their number
+/// @return bonds
+std::vector<InterfaceBond> bonds_of_interfaces(const CutBody& body, const std::vector<IsotropicMaterial>& materials);
 
 }  // namespace springproof

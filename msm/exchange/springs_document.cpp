@@ -281,6 +281,8 @@ NodalVectors check_positions(const NodalVectors& X) {
 SpringsDocument document_of(const SpringsFile& springs) {
   DocumentWriter out;
   const Network& network = springs.model.network;
+  if (!network.cells.materials.empty() || !network.bonds.empty())
+    throw std::invalid_argument("a springs file holds cells of one material; the body has several");
   out.document.head = {{"format", springs_format}, {"version", version_of(network.cells.kind())}};
   out.at({"origin"}) = origin_json(springs.origin);
   if (springs.material)

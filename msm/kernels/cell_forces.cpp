@@ -34,8 +34,10 @@ CellForces<Real>::CellForces(const MassSpringModel& model, InstructionSet set, c
   if (!can(model, Capability::cell_kernels) || (viscous_ && dashpots.shift > 0))
     throw std::invalid_argument("cell forces are of averaged springs, without shift, or measured cells");
   const AveragedSprings* averaged = averaged_springs_of(model);
-  if (averaged) list_.springs = averaged_constants<Real>(*averaged, 1);
-  list_.dashpots = averaged_constants<Real>(dashpots, time);
+  const std::size_t materials = averaged ? 1 + averaged->regions.size() : 1;
+  for (int m = 0; m < static_cast<int>(materials); ++m)
+    constants_.push_back({averaged ? averaged_constants<Real>(averaged->in(m), 1) : LatticeAveraged<Real>{},
+                          averaged_constants<Real>(viscous_ ? dashpots.in(m) : dashpots, time)});
   list_.boxes = model.network.cells.kind() == CellKind::boxes;
   for (int i = 0; i < 3; ++i) {
     list_.proportions[i] = static_cast<Real>(model.network.cells.proportions[i]);
@@ -43,7 +45,9 @@ CellForces<Real>::CellForces(const MassSpringModel& model, InstructionSet set, c
   }
   store_cells(model.network);
   if (!averaged) store_forms(*law_of<MeasuredCells>(model));
-  if (law_of<Anchors>(model)) store_anchors(model.network);
+  if (!law_of<Anchors>(model)) return;
+  store_anchors(model.network);
+  store_bonds(model.network);
 }
 
 template <class Real>
@@ -52,22 +56,26 @@ void CellForces<Real>::store_cells(const Network& network) {
   list_.blocks = order_.plan.blocks;
   corners_.resize(8 * cells * list_.blocks);
   numbers_.resize(cell_number::count * cells * list_.blocks);
+  int cell = 0;  // the one before, with nothing in it, in the rest of a block
   for (long at = 0; at < cells * list_.blocks; ++at) {
-    const int cell = order_.cells[std::min(at, count - 1)];
-    const auto [l, part, proportions] = network.cells.shape(cell);
+    const bool is_cell = at < count && order_.cells[at] >= 0;
+    if (is_cell) cell = order_.cells[at];
+    const CellShape shape = network.cells.shape(cell);
+    const FilledPart& part = shape.part;
+    const double l = shape.edge;
     for (int n = 0; n < 8; ++n)
       corners_[8 * cells * (at / cells) + n * cells + at % cells] =
           order_.place[network.cells.corners[cell][corner_at(n)]];
     const auto set = [&](int number, double value) {
       numbers_[cell_number::count * cells * (at / cells) + number * cells + at % cells] = static_cast<Real>(value);
     };
-    set(cell_number::area, at < count ? part.fraction * l * l : 0);
+    set(cell_number::area, is_cell ? part.fraction * l * l : 0);
     set(cell_number::per_edge, 1 / l);
     for (int i = 0; i < 3; ++i) {
       set(cell_number::mean + i, part.mean[i] / 2);
       set(cell_number::mixed + i, part.mixed[i]);
       set(cell_number::variance + i,
-          std::max(12 * part.variance[i], AveragedSprings::least_variance) * std::pow(proportions[i], 2));
+          std::max(12 * part.variance[i], AveragedSprings::least_variance) * std::pow(shape.proportions[i], 2));
     }
   }
 }
@@ -104,9 +112,42 @@ void CellForces<Real>::store_anchors(const Network& network) {
 }
 
 template <class Real>
+void CellForces<Real>::store_bonds(const Network& network) {
+  for (const int number : order_.bonds) {
+    const InterfaceBond& b = network.bonds[number];
+    Tie tie;
+    int at = 0;
+    for_each_corner(b, [&](int node, double weight) {
+      tie.corners[at] = order_.place[node];
+      tie.weights[at++] = static_cast<Real>(weight);
+    });
+    const Vec3 at_rest = gap(b, network.X);
+    for (int d = 0; d < 3; ++d) {
+      tie.gap[d] = static_cast<Real>(at_rest[d]);
+      for (int e = 0; e < 3; ++e) tie.stiffness[d][e] = static_cast<Real>(b.stiffness(d, e));
+    }
+    ties_.push_back(tie);
+  }
+}
+
+template <class Real>
 void CellForces<Real>::add_blocks(long begin, long end, const Padded<Real>* x, const Padded<Real>* s,
                                   Padded<Real>* f) const {
+  for (long first = begin, next; first < end; first = next) {
+    for (next = first + 1; next < end && order_.material[next] == order_.material[first];) ++next;
+    add_cells(first, next, x, s, f);
+  }
+  add_anchors(begin, end, x, f);
+  add_bonds(begin, end, x, f);
+}
+
+/// Of blocks of one material.
+template <class Real>
+void CellForces<Real>::add_cells(long begin, long end, const Padded<Real>* x, const Padded<Real>* s,
+                                 Padded<Real>* f) const {
   CellList<Real> list = list_;
+  list.springs = constants_[order_.material[begin]].springs;
+  list.dashpots = constants_[order_.material[begin]].dashpots;
   list.blocks = end - begin;
   list.corners = corners_.data() + 8 * kernels_->cell_list.cells * begin;
   list.numbers = numbers_.data() + cell_number::count * kernels_->cell_list.cells * begin;
@@ -115,6 +156,10 @@ void CellForces<Real>::add_blocks(long begin, long end, const Padded<Real>* x, c
     kernels_->cell_list.viscous_forces(list, x, s, f);
   else
     kernels_->cell_list.forces(list, x, f);
+}
+
+template <class Real>
+void CellForces<Real>::add_anchors(long begin, long end, const Padded<Real>* x, Padded<Real>* f) const {
   if (anchors_.empty()) return;
   for (int number = order_.first_anchor[begin]; number < order_.first_anchor[end]; ++number) {
     const Held& a = anchors_[number];
@@ -124,6 +169,23 @@ void CellForces<Real>::add_blocks(long begin, long end, const Padded<Real>* x, c
       const Real force = a.stiffness[d] * stretch;
       f[a.node].v[d] += force;
       for (int n = 0; n < 8; ++n) f[a.corners[n]].v[d] -= a.weights[n] * force;
+    }
+  }
+}
+
+template <class Real>
+void CellForces<Real>::add_bonds(long begin, long end, const Padded<Real>* x, Padded<Real>* f) const {
+  if (ties_.empty()) return;
+  for (int number = order_.first_bond[begin]; number < order_.first_bond[end]; ++number) {
+    const Tie& t = ties_[number];
+    Real g[3];
+    for (int d = 0; d < 3; ++d) {
+      g[d] = t.gap[d];
+      for (int n = 0; n < 16; ++n) g[d] += t.weights[n] * x[t.corners[n]].v[d];
+    }
+    for (int d = 0; d < 3; ++d) {
+      const Real force = t.stiffness[d][0] * g[0] + t.stiffness[d][1] * g[1] + t.stiffness[d][2] * g[2];
+      for (int n = 0; n < 16; ++n) f[t.corners[n]].v[d] -= t.weights[n] * force;
     }
   }
 }

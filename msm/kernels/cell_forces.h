@@ -7,9 +7,9 @@
 
 namespace springproof {
 
-/// Internal forces of a model of averaged springs, or measured cells, with anchors or without; keeps no reference to
-/// the model.  `x` are displacements. Real = double: equal to forces() (msm/laws/laws.h) to 1e-12 of the largest force;
-/// float: 1e-5.
+/// Internal forces of a model of averaged springs, of one material or several, or measured cells, with anchors or
+/// without; keeps no reference to the model.  `x` are displacements. Real = double: equal to forces() (msm/laws/laws.h)
+/// to 1e-12 of the largest force; float: 1e-5.
 template <class Real>
 class CellForces : public BlockForces<Real> {
  public:
@@ -38,9 +38,22 @@ class CellForces : public BlockForces<Real> {
     Real weights[8], stiffness[3], stretch[3];  ///< [1], [N/m], [m]
   };
 
+  /// The same of a bond of two cells.
+  struct Tie {
+    int corners[16];
+    Real weights[16], stiffness[3][3], gap[3];
+  };
+  struct Constants {
+    LatticeAveraged<Real> springs, dashpots;
+  };
+
   void store_cells(const Network& network);
   void store_forms(const MeasuredCells& law);
   void store_anchors(const Network& network);
+  void store_bonds(const Network& network);
+  void add_cells(long begin, long end, const Padded<Real>* x, const Padded<Real>* s, Padded<Real>* f) const;
+  void add_anchors(long begin, long end, const Padded<Real>* x, Padded<Real>* f) const;
+  void add_bonds(long begin, long end, const Padded<Real>* x, Padded<Real>* f) const;
 
   const Kernels<Real>* kernels_;
   NodalVectors X_;
@@ -49,7 +62,9 @@ class CellForces : public BlockForces<Real> {
   std::vector<int> corners_;
   std::vector<Real> numbers_, forms_;
   CellList<Real> list_;
+  std::vector<Constants> constants_;  ///< of each material
   std::vector<Held> anchors_;
+  std::vector<Tie> ties_;
   std::vector<CarriedPoint> carried_;  ///< places
   std::vector<Padded<Real>> x_, s_;    ///< with carried nodes in their places; of add()
 };

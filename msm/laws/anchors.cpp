@@ -16,6 +16,10 @@ Vec3 stretch(const Anchor& a, const NodalVectors& x) {
 double Anchors::energy(const Network& network, const NodalVectors& x) const {
   double sum = 0;
   for (const Anchor& a : network.anchors) sum += a.stiffness / 2 * stretch(a, x).squaredNorm();
+  for (const InterfaceBond& b : network.bonds) {
+    const Vec3 g = gap(b, x);
+    sum += g.dot(b.stiffness * g) / 2;
+  }
   return sum;
 }
 
@@ -24,6 +28,10 @@ void Anchors::add_forces(const Network& network, const NodalVectors& x, NodalVec
     const Vec3 force = a.stiffness * stretch(a, x);
     f.row(a.node) += force.transpose();
     for (int n = 0; n < 8; ++n) f.row(a.corners[n]) -= a.weights[n] * force.transpose();
+  }
+  for (const InterfaceBond& b : network.bonds) {
+    const Vec3 force = b.stiffness * gap(b, x);
+    for_each_corner(b, [&](int node, double weight) { f.row(node) -= weight * force.transpose(); });
   }
 }
 
@@ -38,6 +46,9 @@ void Anchors::add_tangent(const Network& network, const NodalVectors&, BlockMatr
       for (int n = 0; n < 8; ++n) K.add(a.corners[m], a.corners[n], a.stiffness * a.weights[m] * a.weights[n] * I);
     }
   }
+  for (const InterfaceBond& b : network.bonds)
+    for_each_corner(
+        b, [&](int m, double v) { for_each_corner(b, [&](int n, double w) { K.add(m, n, v * w * b.stiffness); }); });
 }
 
 }  // namespace springproof

@@ -1,4 +1,5 @@
-// Force law: the anchors by which supports hold the true surface of a body of cut cells.
+// Force law: the anchors by which supports hold the true surface of a body of cut cells, and the bonds by which its
+// materials hold each other.
 #pragma once
 
 #include "msm/algebra/block_matrix.h"
@@ -7,8 +8,8 @@
 
 namespace springproof {
 
-/// Energy sum k/2 |sum_a w_a x_a - x_node|^2 over Network::anchors: springs of rest length zero, so
-/// the energy is quadratic and the same in every frame.
+/// Energy sum k/2 |sum_a w_a x_a - x_node|^2 over Network::anchors and sum g.K g/2 over Network::bonds: springs of rest
+/// length zero, so the energy is quadratic, and the same in every frame where K is a multiple of 1.
 struct Anchors {
   /// What solvers, kernels and the time step use of this law.
   static constexpr LawTraits traits = {

@@ -175,19 +175,19 @@ CellMatrix tangent_of(const CellForm& form, const Deformed& s) {
   return K;
 }
 
-/// Calls act(corners, make(shape)) for each cell; that of full cells of one size is made once.
+/// Calls act(corners, make(shape)) for each cell; that of full cells of one size and material is made once.
 template <class Make, class Act>
 void for_each_cell(const CellSet& cells, const Make& make, const Act& act) {
-  std::map<double, decltype(make(CellShape{}))> full;
+  std::map<std::pair<double, int>, decltype(make(CellShape{}))> full;
   auto last = full.end();
   for (std::size_t c = 0; c < cells.size(); ++c) {
     if (!cells.is_full(c)) {
       act(cells.corners[c], make(cells.shape(c)));
       continue;
     }
-    const double edge = cells.edge_of(c);
-    if (last == full.end() || last->first != edge) last = full.find(edge);
-    if (last == full.end()) last = full.emplace(edge, make(cells.shape(c))).first;
+    const std::pair key(cells.edge_of(c), cells.material(c));
+    if (last == full.end() || last->first != key) last = full.find(key);
+    if (last == full.end()) last = full.emplace(key, make(cells.shape(c))).first;
     act(cells.corners[c], last->second);
   }
 }
@@ -207,7 +207,7 @@ void for_each_stiffness(const AveragedSprings& law, const CellSet& cells, const 
 }  // namespace
 
 CellForm cell_form(const AveragedSprings& law, const CellShape& cell) {
-  return {cell.volume(), gradient_of(cell), hourglass_matrix(law, cell)};
+  return {cell.volume(), gradient_of(cell), hourglass_matrix(law.in(cell.material), cell)};
 }
 
 const Eigen::Matrix<double, 8, 4>& corner_patterns() { return patterns(); }
@@ -230,8 +230,9 @@ HourglassStiffness HourglassStiffness::of_pattern(double face_to_cube, double nu
 }
 
 Eigen::Matrix<double, 24, 24> AveragedSprings::cell_matrix(const CellShape& cell) const {
-  const double G = shear_modulus, l = cell.edge, volume = cell.volume();
-  const double bulk = lame_lambda + 2 * G / 3;
+  const AveragedSprings& own = in(cell.material);
+  const double G = own.shear_modulus, l = cell.edge, volume = cell.volume();
+  const double bulk = own.lame_lambda + 2 * G / 3;
   const Vec3& c = cell.part.mean;
   const auto H = second_difference;
 
@@ -252,7 +253,7 @@ Eigen::Matrix<double, 24, 24> AveragedSprings::cell_matrix(const CellShape& cell
   if (shift > 0)
     for (int i = 0; i < 3; ++i) {
       const int j = (i + 1) % 3, k = (i + 2) % 3;
-      normal[i] -= shift * c[i] / l * contraction * (H(i, j, j) + H(i, k, k));
+      normal[i] -= shift * c[i] / l * own.contraction * (H(i, j, j) + H(i, k, k));
       shear[i] -= shift / l * (c[j] * H(j, k, j) + c[k] * H(k, j, k));
     }
 
@@ -264,7 +265,7 @@ Eigen::Matrix<double, 24, 24> AveragedSprings::cell_matrix(const CellShape& cell
   }
 
   const Eigen::Matrix<double, 12, 24> of_patterns = components_of_patterns();
-  K += of_patterns.transpose() * hourglass_matrix(*this, cell) * of_patterns;
+  K += of_patterns.transpose() * hourglass_matrix(own, cell) * of_patterns;
   return K;
 }
 
@@ -287,7 +288,7 @@ double AveragedSprings::energy(const Network& network, const NodalVectors& x) co
     });
   else
     for_each_at_rest(network.cells, [&](const Hexahedron& corners, const CellAtRest& cell) {
-      const Deformed s(*this, cell, corners_of(corners, x), Derivative::none);
+      const Deformed s(in(cell.shape.material), cell, corners_of(corners, x), Derivative::none);
       sum += cell.volume * s.strain.value + 0.5 * s.v.cwiseProduct(s.w).sum();
     });
   return sum;
@@ -301,7 +302,7 @@ void AveragedSprings::add_forces(const Network& network, const NodalVectors& x, 
     });
   else
     for_each_at_rest(network.cells, [&](const Hexahedron& corners, const CellAtRest& cell) {
-      const Deformed s(*this, cell, corners_of(corners, x), Derivative::first);
+      const Deformed s(in(cell.shape.material), cell, corners_of(corners, x), Derivative::first);
       const Eigen::Matrix3d stress = cell.volume * s.strain.stress + s.q * s.w.transpose();
       const InPatterns of_patterns = s.F * s.w;
       const Corners gradient = stress * cell.gradient + of_patterns * patterns().transpose();
@@ -322,11 +323,12 @@ void AveragedSprings::add_viscous_forces(const Network& network, const NodalVect
     const Eigen::Matrix3d F = at * cell.gradient.transpose(), F_rate = rate * cell.gradient.transpose();
     const Eigen::Matrix3d twice = F.transpose() * F_rate + F_rate.transpose() * F;  // 2 E'
     const Eigen::Matrix3d inverse = F.inverse();
+    const AveragedSprings& own = in(cell.shape.material);
     const Eigen::Matrix3d P =
-        shear_modulus * F * twice + lame_lambda * (F_rate * inverse).trace() * inverse.transpose();
+        own.shear_modulus * F * twice + own.lame_lambda * (F_rate * inverse).trace() * inverse.transpose();
     const InPatterns q = at * patterns();
     const InPatterns w =
-        hourglass_forces(*this, cell.shape, F_rate.transpose() * q + F.transpose() * (rate * patterns()));
+        hourglass_forces(own, cell.shape, F_rate.transpose() * q + F.transpose() * (rate * patterns()));
     const Eigen::Matrix3d stress = time * (cell.volume * P + q * w.transpose());
     const InPatterns of_patterns = time * F * w;
     const Corners force = stress * cell.gradient + of_patterns * patterns().transpose();
@@ -345,7 +347,8 @@ void AveragedSprings::add_tangent(const Network& network, const NodalVectors& x,
     for_each_cell(
         network.cells, [&](const CellShape& cell) { return std::pair(cell_form(*this, cell), CellAtRest(cell)); },
         [&](const Hexahedron& corners, const auto& of) {
-          add(corners, tangent_of(of.first, Deformed(*this, of.second, corners_of(corners, x), Derivative::second)));
+          const Deformed s(in(of.second.shape.material), of.second, corners_of(corners, x), Derivative::second);
+          add(corners, tangent_of(of.first, s));
         });
 }
 

@@ -1,6 +1,8 @@
 // Force law: springs averaged over a cell, a cube that the body may fill in part, or a box.
 #pragma once
 
+#include <vector>
+
 #include "msm/algebra/block_matrix.h"
 #include "msm/laws/filled_volume.h"
 #include "msm/laws/law_traits.h"
@@ -58,8 +60,9 @@ struct AveragedSprings {
   /// limbs bend better that lie askew in the lattice, at the price of the patch test, and holds for small displacements
   /// from rest only.
   double shift = 0;
-  double contraction = 0;                   ///< nu/(1 - nu) of these second derivatives
-  StrainCurve curve = StrainCurve::hencky;  ///< the law at large strain
+  double contraction = 0;                     ///< nu/(1 - nu) of these second derivatives
+  StrainCurve curve = StrainCurve::hencky;    ///< the law at large strain
+  std::vector<AveragedSprings> regions = {};  ///< those of the cells of material 1, 2, ...; of material 0: these
 
   /// Names the parameters, for springs files (law_traits.h).
   template <class Fields>
@@ -75,6 +78,9 @@ struct AveragedSprings {
     f.number("contraction", contraction, -0.5, 1);
     f.choice("curve", curve);
   }
+
+  /// Those of a material, by its number.
+  const AveragedSprings& in(int material) const { return material == 0 ? *this : regions[material - 1]; }
 
   double energy(const Network& network, const NodalVectors& x) const;  ///< [J]; +inf if a cell is inverted
   void add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const;  ///< f += -dE/dx [N]

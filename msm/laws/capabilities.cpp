@@ -52,7 +52,10 @@ std::string together_lack(const MassSpringModel& model, Capability what) {
   }
 }
 
+constexpr const char* of_several = "its cells are of several materials";
+
 std::string mass_average_lacks(const Network& network) {
+  if (!network.cells.materials.empty()) return of_several;
   if (network.cells.empty()) return "its network has no cells";
   if (network.cells.kind() == CellKind::sizes) return "its cells are of several sizes";
   if (std::any_of(network.anchors.begin(), network.anchors.end(), [](const Anchor& a) { return a.axes != 7; }))

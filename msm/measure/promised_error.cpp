@@ -59,7 +59,7 @@ Strains nodal_strains(const Network& network, const Strains& of_cells) {
   return sum;
 }
 
-/// Energy of the anchors of each cell.
+/// Energy of the anchors of each cell, and half of that of its bonds.
 std::vector<double> anchor_energies(const Network& network, const NodalVectors& u) {
   std::map<Hexahedron, std::size_t> cell_of;
   for (std::size_t c = 0; c < network.cells.size(); ++c) cell_of[network.cells.corners[c]] = c;
@@ -69,6 +69,10 @@ std::vector<double> anchor_energies(const Network& network, const NodalVectors& 
     for (int n = 0; n < 8; ++n) gap += anchor.weights[n] * u.row(anchor.corners[n]);
     for (int axis = 0; axis < 3; ++axis)
       if (anchor.acts(axis)) energies[cell_of.at(anchor.corners)] += anchor.stiffness / 2 * gap[axis] * gap[axis];
+  }
+  for (const InterfaceBond& bond : network.bonds) {
+    const Vec3 g = gap(bond, u);
+    for (const Hexahedron& side : bond.corners) energies[cell_of.at(side)] += g.dot(bond.stiffness * g) / 4;
   }
   return energies;
 }
@@ -108,6 +112,7 @@ CellEnergies cell_energies(const MassSpringModel& model, const NodalVectors& u) 
   energies.elastic = sum_of(energies.anchors);
   for (std::size_t c = 0; c < network.cells.size(); ++c) {
     const FilledPart& part = network.cells.part(c);
+    const AveragedSprings& own = law->in(network.cells.material(c));
     double mean = 0;  // over eight points with the moments of the filled part along each axis
     for (int point = 0; point < 8; ++point) {
       Eigen::Matrix<double, 1, 9> difference = -of_cells.row(static_cast<Eigen::Index>(c));
@@ -119,7 +124,7 @@ CellEnergies cell_energies(const MassSpringModel& model, const NodalVectors& u) 
         }
         difference += weight * of_nodes.row(network.cells.corners[c][n]);
       }
-      mean += energy_density(*law, as_matrix(difference)) / 8;
+      mean += energy_density(own, as_matrix(difference)) / 8;
     }
     energies.error.push_back(filled_volume(network, c) * mean);
     Eigen::Matrix<double, 24, 1> of_corners;

@@ -32,6 +32,8 @@ CellSet CellSet::of(const std::vector<int>& numbers) const {
   some.proportions = proportions;
   some.edges = of_numbers(edges, numbers);
   some.filled = of_numbers(filled, numbers);
+  some.materials = of_numbers(materials, numbers);
+  some.relative_densities = relative_densities;
   some.carried = carried;
   some.springs = springs;
   return some;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -33,6 +34,7 @@ struct CellShape {
   double edge;                      ///< l [m]; of a box that of the cube of its volume
   FilledPart part = {};             ///< that the body fills
   Vec3 proportions = Vec3::Ones();  ///< edges of a box over l, of product one; cubes: 1
+  int material = 0;                 ///< its number: laws have constants of each
 
   double volume() const { return part.fraction * edge * edge * edge; }  ///< of the filled part [m^3]
 };
@@ -42,9 +44,11 @@ struct CellSet {
   std::vector<Hexahedron> corners;  ///< nodes of each cell; empty for networks without
   double edge = 0;  ///< l [m]: of several sizes of the smallest; of boxes of their cube; of a lattice of
                     ///< springs without cells its spacing
-  Vec3 proportions = Vec3::Ones();  ///< edges of boxes over those of the cube of their volume; cubes: 1
-  std::vector<double> edges;        ///< [m] of each cell, if they are of several sizes
-  std::vector<FilledPart> filled;   ///< of each cell, if they are cut
+  Vec3 proportions = Vec3::Ones();         ///< edges of boxes over those of the cube of their volume; cubes: 1
+  std::vector<double> edges;               ///< [m] of each cell, if they are of several sizes
+  std::vector<FilledPart> filled;          ///< of each cell, if they are cut
+  std::vector<std::uint8_t> materials;     ///< of each cell, if there are several
+  std::vector<double> relative_densities;  ///< of each material, over that of material 0; empty: 1
   /// Nodes on edges and faces of larger cells.  They are no unknowns: they follow the others, to which the forces on
   /// them, and their mass, are handed back.
   std::vector<CarriedPoint> carried;
@@ -64,11 +68,14 @@ struct CellSet {
   /// @return what the body fills of it
   const FilledPart& part(std::size_t cell) const;
   /// @param cell its number
-  /// @return whether it is as all other full cells of its edge are
+  /// @return whether it is as all other full cells of its edge and material are
   bool is_full(std::size_t cell) const { return part(cell).fraction == 1; }
   /// @param cell its number
+  /// @return the number of its material
+  int material(std::size_t cell) const { return materials.empty() ? 0 : materials[cell]; }
+  /// @param cell its number
   /// @return all that its stiffness depends on beside its law
-  CellShape shape(std::size_t cell) const { return {edge_of(cell), part(cell), proportions}; }
+  CellShape shape(std::size_t cell) const { return {edge_of(cell), part(cell), proportions, material(cell)}; }
   /// @return of a full cell, the smallest if there are several sizes
   CellShape full() const { return {edge, {}, proportions}; }
   /// @return of a full cell, the smallest if there are several sizes [m^3]

@@ -12,6 +12,12 @@ Vec3 anchored_point(const Anchor& anchor, const NodalVectors& X) {
   return point;
 }
 
+Vec3 gap(const InterfaceBond& bond, const NodalVectors& x) {
+  Vec3 g = Vec3::Zero();
+  for_each_corner(bond, [&](int node, double weight) { g += weight * x.row(node).transpose(); });
+  return g;
+}
+
 std::vector<Spring> merge_springs(std::vector<Spring> springs) {
   int nodes = 0;
   for (Spring& s : springs) {
@@ -42,8 +48,19 @@ std::vector<Spring> merge_springs(std::vector<Spring> springs) {
   return springs;
 }
 
+Eigen::VectorXd volumes_by_mass(const Network& network) {
+  const CellSet& cells = network.cells;
+  if (cells.relative_densities.empty()) return network.volume;
+  Eigen::VectorXd volume = Eigen::VectorXd::Zero(network.nodes());
+  for (std::size_t c = 0; c < cells.size(); ++c)
+    for (const int n : cells.corners[c])
+      volume[n] += cells.relative_densities[cells.material(c)] * cells.shape(c).volume() / 8;
+  hand_back(cells.carried, volume, 1);
+  return volume;
+}
+
 Eigen::VectorXd masses(const Network& network, double density) {
-  Eigen::VectorXd mass = density * network.volume;
+  Eigen::VectorXd mass = density * volumes_by_mass(network);
   if (network.attached.size() > 0) mass += network.attached;
   return mass;
 }

@@ -25,15 +25,37 @@ struct Anchor {
 /// @param X rest positions of the nodes [m], n x 3
 Vec3 anchored_point(const Anchor& anchor, const NodalVectors& X);
 
+/// Spring of rest length zero between weighted means of the corners of two cells, by which the interface of two
+/// materials ties them: energy g.K g/2, g = sum_a w_0a x_0a - sum_a w_1a x_1a.
+struct InterfaceBond {
+  std::array<Hexahedron, 2> corners;             ///< nodes of the cells; they may have some in common
+  std::array<std::array<double, 8>, 2> weights;  ///< of each cell; they sum to 1
+  Eigen::Matrix3d stiffness;                     ///< K [N/m], symmetric
+};
+
+/// The gap of a bond at positions x [m].
+/// @param bond a bond
+/// @param x positions of the nodes [m], n x 3
+/// @return g [m]
+Vec3 gap(const InterfaceBond& bond, const NodalVectors& x);
+
+/// Calls act(node, weight) for the corners of both cells of a bond, those of the second with -w.
+template <class Act>
+void for_each_corner(const InterfaceBond& bond, const Act& act) {
+  for (int side = 0; side < 2; ++side)
+    for (int n = 0; n < 8; ++n) act(bond.corners[side][n], side == 0 ? bond.weights[0][n] : -bond.weights[1][n]);
+}
+
 /// Nodes, springs and cells of a body; laws (msm/laws/laws.h) say what forces they have.
 struct Network {
-  NodalVectors X;               ///< rest positions [m], n x 3
-  std::vector<Spring> springs;  ///< each pair once, sorted by (i, j)
-  CellSet cells;                ///< cubes or boxes that fill the body; none in networks without
-  std::vector<Anchor> anchors;  ///< of the supports of cut cells
-  Eigen::VectorXd volume;       ///< volume share of each node in the body [m^3]; of carried ones 0
-  Eigen::VectorXd attached;     ///< mass of each node beside the body's own [kg]; empty: none
-  std::vector<int> image_of;    ///< per node the node it is a periodic image of (itself if none); empty: no images
+  NodalVectors X;                    ///< rest positions [m], n x 3
+  std::vector<Spring> springs;       ///< each pair once, sorted by (i, j)
+  CellSet cells;                     ///< cubes or boxes that fill the body; none in networks without
+  std::vector<Anchor> anchors;       ///< of the supports of cut cells
+  std::vector<InterfaceBond> bonds;  ///< of interfaces between cut cells
+  Eigen::VectorXd volume;            ///< volume share of each node in the body [m^3]; of carried ones 0
+  Eigen::VectorXd attached;          ///< mass of each node beside the body's own [kg]; empty: none
+  std::vector<int> image_of;         ///< per node the node it is a periodic image of (itself if none); empty: no images
   std::vector<std::array<int, 3>> triangles;  ///< of planar networks, anticlockwise
 
   /// @return number of nodes, periodic images included
@@ -64,10 +86,15 @@ std::vector<char> fixed_or_carried(const Network& network, std::vector<char> fix
 /// @return [m]; 3 * corner + axis
 Eigen::Matrix<double, 24, 1> displacement_of(const Hexahedron& cell, const Network& network, const NodalVectors& x);
 
+/// Mass of each node over the density of the body's own material, without what is attached to it.
+/// @param network with Network::volume
+/// @return [m^3], one per node
+Eigen::VectorXd volumes_by_mass(const Network& network);
+
 /// Mass of each node: rho times its volume share (rho V/8 per cell corner, Golec et al. 2019, sec. 5.4), and what is
 /// attached to it.
 /// @param network with Network::volume
-/// @param density rho [kg/m^3]
+/// @param density rho of the body [kg/m^3]
 /// @return [kg], one per node
 Eigen::VectorXd masses(const Network& network, double density);
 

@@ -121,8 +121,8 @@ struct AddSecantForces {
     }
   }
 
-  void operator()(const AveragedSprings& law) const {
-    const auto at = [&](const Mat3& C, Derivative up_to) {
+  void operator()(const AveragedSprings& all) const {
+    const auto stress = [](const AveragedSprings& law, const Mat3& C, Derivative up_to) {
       return stress_in(C, up_to, [&](const Mat3& F) {
         StrainEnergy W = springs_energy(law.curve, law.shear_modulus, F, up_to);
         add_volume_term(law.curve, law.lame_lambda - law.shear_modulus, F, up_to, W);
@@ -138,6 +138,8 @@ struct AddSecantForces {
       Eigen::Matrix<double, 3, 4> w;
       Eigen::Map<Eigen::Matrix<double, 12, 1>>(w.data()) =
           form.hourglass * Eigen::Map<const Eigen::Matrix<double, 12, 1>>(v.data());
+      const AveragedSprings& law = all.in(network.cells.material(c));
+      const auto at = [&](const Mat3& C, Derivative up_to) { return stress(law, C, up_to); };
       const Mat3 S = secant_stress(F0.transpose() * F0, F1.transpose() * F1, at);
       subtract((form.volume * F * S + q * w.transpose()) * form.gradient + F * w * corner_patterns().transpose(),
                network.cells.corners[c], f);
@@ -157,19 +159,20 @@ EnergyMomentum::EnergyMomentum(const MassSpringModel& model) : model_(model) {
   if (const std::string why = lacks(model, Capability::energy_momentum); !why.empty()) throw std::invalid_argument(why);
   const AveragedSprings* law = averaged_springs_of(model);
   if (!law) return;
-  std::map<double, int> full;  // by edge
+  std::map<std::pair<double, int>, int> full;  // by edge and material
   const Network& network = model.network;
   for (std::size_t c = 0; c < network.cells.size(); ++c) {
     const auto make = [&] {
       forms_.push_back(cell_form(*law, network.cells.shape(c)));
       return static_cast<int>(forms_.size()) - 1;
     };
+    const std::pair key(network.cells.edge_of(c), network.cells.material(c));
     if (!network.cells.is_full(c))
       form_of_.push_back(make());
-    else if (const auto known = full.find(network.cells.edge_of(c)); known != full.end())
+    else if (const auto known = full.find(key); known != full.end())
       form_of_.push_back(known->second);
     else
-      form_of_.push_back(full[network.cells.edge_of(c)] = make());
+      form_of_.push_back(full[key] = make());
   }
 }
 

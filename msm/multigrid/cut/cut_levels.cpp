@@ -65,7 +65,7 @@ std::vector<std::array<int, 2>> neighbours(const CutLevel& level, const std::vec
   return pairs;
 }
 
-/// Cells of a level that become one: children of one cube that share points.
+/// Cells of a level that become one: children of one cube and material that share points.
 UnitedNumbers families(const CutLevel& fine, const std::vector<std::vector<int>>& at_point) {
   UnitedNumbers family(fine.cubes.size());
   const auto are_siblings = [&](const LatticeCube& a, const LatticeCube& b) {
@@ -74,7 +74,8 @@ UnitedNumbers families(const CutLevel& fine, const std::vector<std::vector<int>>
   for (const std::vector<int>& cells : at_point)
     for (const int c : cells)
       for (const int d : cells)
-        if (d < c && are_siblings(fine.cubes[c], fine.cubes[d])) family.unite(c, d);
+        if (d < c && are_siblings(fine.cubes[c], fine.cubes[d]) && fine.material(c) == fine.material(d))
+          family.unite(c, d);
   return family;
 }
 
@@ -89,6 +90,7 @@ void add_parents(UnitedNumbers family, CutLevel& fine, CutLevel& coarse) {
       parent[head] = static_cast<int>(coarse.cubes.size());
       coarse.cubes.push_back(parent_of(fine.cubes[c]));
       coarse.filled.push_back(fine.filled[c]);
+      if (!fine.materials.empty()) coarse.materials.push_back(fine.materials[c]);
       moments.emplace_back();
     }
     parent[c] = parent[head];
@@ -113,18 +115,33 @@ void set_weights(const std::vector<std::vector<int>>& at_point, const CutLevel& 
   }
 }
 
-/// The anchors of a level, on the corners of the parents.
+/// A mean over the corners of a cell of a level as one over those of its parent.
+struct MeanAbove {
+  Hexahedron corners;
+  std::array<double, 8> weights{};
+
+  MeanAbove(const Hexahedron& of, const std::array<double, 8>& mean, const std::vector<std::vector<int>>& at_point,
+            const CutLevel& fine, const CutLevel& coarse) {
+    int cell = -1;
+    for (const int c : at_point[of[0]])
+      if (fine.corners[c] == of) cell = c;
+    const int up = fine.parent[cell];
+    corners = coarse.corners[up];
+    for (int n = 0; n < 8; ++n)
+      for (int m = 0; m < 8; ++m) weights[m] += mean[n] * weight_at(coarse.cubes[up], m, fine.point[of[n]]);
+  }
+};
+
+/// The anchors and bonds of a level, on the corners of the parents.
 void add_anchors(const std::vector<std::vector<int>>& at_point, const CutLevel& fine, CutLevel& coarse) {
   for (const Anchor& a : fine.anchors) {
-    int cell = -1;
-    for (const int c : at_point[a.corners[0]])
-      if (fine.corners[c] == a.corners) cell = c;
-    const int up = fine.parent[cell];
-    Anchor above{coarse.corners[up], {}, a.node, a.stiffness, a.axes};
-    for (int n = 0; n < 8; ++n)
-      for (int m = 0; m < 8; ++m)
-        above.weights[m] += a.weights[n] * weight_at(coarse.cubes[up], m, fine.point[a.corners[n]]);
-    coarse.anchors.push_back(above);
+    const MeanAbove above(a.corners, a.weights, at_point, fine, coarse);
+    coarse.anchors.push_back({above.corners, above.weights, a.node, a.stiffness, a.axes});
+  }
+  for (const InterfaceBond& b : fine.bonds) {
+    const MeanAbove first(b.corners[0], b.weights[0], at_point, fine, coarse),
+        second(b.corners[1], b.weights[1], at_point, fine, coarse);
+    coarse.bonds.push_back({{first.corners, second.corners}, {first.weights, second.weights}, b.stiffness});
   }
 }
 
@@ -155,6 +172,13 @@ void CutLevel::invert_anchored() {
   for (const Anchor& a : anchors) {
     std::vector<int>& points = anchored.emplace_back();
     for (const int n : a.corners) for_each_carrier(carriers, n, [&](int p, double) { points.push_back(p); });
+  }
+  for (const InterfaceBond& b : bonds) {
+    std::vector<int>& points = anchored.emplace_back();
+    for_each_corner(b,
+                    [&](int n, double) { for_each_carrier(carriers, n, [&](int p, double) { points.push_back(p); }); });
+  }
+  for (std::vector<int>& points : anchored) {
     std::sort(points.begin(), points.end());
     points.erase(std::unique(points.begin(), points.end()), points.end());
   }
@@ -270,6 +294,8 @@ std::vector<CutLevel> cut_levels(const Network& network, const AnchoredNodes& no
   finest.corners = network.cells.corners;
   finest.filled = network.cells.filled;
   finest.filled.resize(network.cells.size());  // whole cubes have none
+  finest.materials = network.cells.materials;
+  finest.bonds = network.bonds;
   const Vec3 lower = network.X.topRows(nodes.corners).colwise().minCoeff().transpose();
   for (int n = 0; n < nodes.corners; ++n) {
     std::array<int, 3> at;

@@ -1,5 +1,5 @@
 // Lattices of cut cells, in which the smallest cells give way to cells of twice the edge level by level; those are cut
-// cells again, by the moments of their children.
+// cells again, of one material, by the moments of their children.
 #pragma once
 
 #include <Eigen/SparseCholesky>
@@ -16,16 +16,19 @@ struct CutLevel {
   std::vector<LatticeCube> cubes;         ///< of the cells, in edges
   std::vector<Hexahedron> corners;        ///< points
   std::vector<FilledPart> filled;         ///< of the cells
+  std::vector<std::uint8_t> materials;    ///< of the cells; empty: one
   std::vector<std::array<int, 3>> point;  ///< in edges
   std::vector<CarriedPoint> carried;      ///< points without rows and columns in A
   std::vector<Anchor> anchors;            ///< on the corners of a cell, along the axes that are held
+  std::vector<InterfaceBond> bonds;       ///< on the corners of two cells
 
   // Transfer to the coarser level; empty on the coarsest.
   std::vector<int> parent;                      ///< cell of the coarser level that contains each cell
   std::vector<int> weight_begin, weight_point;  ///< per point, of the coarser level's points
   std::vector<float> weight;
 
-  /// Points that move the corners of a cell with anchors, which is stiffer than others: they are relaxed together.
+  /// Points that move the corners of a cell with anchors, or of two with bonds, which are stiffer than others: they are
+  /// relaxed together.
   std::vector<std::vector<int>> anchored;
   std::vector<Eigen::MatrixXf> anchored_inverse;  ///< of their rows and columns of A
   void invert_anchored();                         ///< sets the two from A
@@ -36,7 +39,10 @@ struct CutLevel {
 
   Eigen::Index unknowns() const { return 3 * static_cast<Eigen::Index>(point.size()); }
   /// Of a cell.
-  CellShape shape(std::size_t cell) const { return {edge * cubes[cell].size, filled[cell]}; }
+  CellShape shape(std::size_t cell) const {
+    return {edge * cubes[cell].size, filled[cell], Vec3::Ones(), material(cell)};
+  }
+  int material(std::size_t cell) const { return materials.empty() ? 0 : materials[cell]; }
   /// out += P^T r and u += P coarse; `coarse` and its right-hand side `out` are of the next level.
   void restrict_to(const Eigen::VectorXf& r, const CutLevel& next, Eigen::VectorXf& out) const;
   void prolongate(Eigen::VectorXf& coarse, const CutLevel& next, Eigen::VectorXf& u) const;

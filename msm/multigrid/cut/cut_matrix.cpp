@@ -40,6 +40,19 @@ Lists cells_at_points(const CutLevel& level, const Carriers& carriers) {
   return at;
 }
 
+/// Points that a bond couples with each point.
+std::vector<std::vector<int>> bonded_points(const CutLevel& level, const Carriers& carriers) {
+  std::vector<std::vector<int>> bonded(level.point.size());
+  std::vector<int> points;
+  for (const InterfaceBond& b : level.bonds) {
+    points.clear();
+    for_each_corner(b,
+                    [&](int n, double) { for_each_carrier(carriers, n, [&](int p, double) { points.push_back(p); }); });
+    for (const int p : points) bonded[p].insert(bonded[p].end(), points.begin(), points.end());
+  }
+  return bonded;
+}
+
 std::vector<int> from_bottom_to_top(const std::vector<std::array<int, 3>>& place) {
   std::vector<std::pair<long, int>> key;
   for (std::size_t i = 0; i < place.size(); ++i)
@@ -48,6 +61,11 @@ std::vector<int> from_bottom_to_top(const std::vector<std::array<int, 3>>& place
   std::vector<int> order;
   for (const auto& [k, i] : key) order.push_back(i);
   return order;
+}
+
+/// Size and material of a cell: full ones of a kind have the same stiffness.
+std::pair<int, int> kind_of(const CutLevel& level, std::size_t cell) {
+  return {level.cubes[cell].size, level.material(cell)};
 }
 
 }  // namespace
@@ -63,15 +81,16 @@ CutMatrix<Real>::CutMatrix(const StiffnessOfCells& cells, double unit, const Cut
   std::vector<char> own(points, 0), apart(points, 0);
   for (const Anchor& a : level.anchors)
     for (const int q : a.corners) apart[q] = 1;
+  const std::vector<std::vector<int>> bonded = bonded_points(level, carriers);
   const auto is_inside = [&](int p) {  // of eight full cells of one size
-    if (!cells.full_alike || apart[p] || at.begin[p + 1] - at.begin[p] != 8) return false;
+    if (!cells.full_alike || apart[p] || !bonded[p].empty() || at.begin[p + 1] - at.begin[p] != 8) return false;
     for (int e = at.begin[p]; e < at.begin[p + 1]; ++e) {
       const int c = at.value[e];
-      if (level.filled[c].fraction != 1 || level.cubes[c].size != level.cubes[at.value[at.begin[p]]].size) return false;
+      if (level.filled[c].fraction != 1 || kind_of(level, c) != kind_of(level, at.value[at.begin[p]])) return false;
     }
     return true;
   };
-  std::map<int, int> inside;  // first block of the rows inside, by the size of their cells
+  std::map<std::pair<int, int>, int> inside;  // first block of the rows inside, by the kind of their cells
   std::vector<int> seen(points, -1);
   int blocks = 0;
   for (const int p : point_) {
@@ -87,6 +106,11 @@ CutMatrix<Real>::CutMatrix(const StiffnessOfCells& cells, double unit, const Cut
           for (int a = 0; a < 3 && !fixed.empty(); ++a) is_shared &= !fixed[3 * j + a];
         });
       }
+    for (const int j : bonded[p])
+      if (seen[j] != p) {
+        seen[j] = p;
+        column_.push_back(row_[j]);
+      }
     std::sort(column_.begin() + start, column_.end());
     diagonal_.push_back(
         static_cast<int>(std::lower_bound(column_.begin() + start, column_.end(), row_[p]) - column_.begin()));
@@ -94,7 +118,7 @@ CutMatrix<Real>::CutMatrix(const StiffnessOfCells& cells, double unit, const Cut
     const int entries = static_cast<int>(column_.size()) - begin_.back();
     begin_.push_back(static_cast<int>(column_.size()));
     if (is_shared && entries == 27) {
-      const auto [known, is_first] = inside.try_emplace(level.cubes[at.value[at.begin[p]]].size, blocks);
+      const auto [known, is_first] = inside.try_emplace(kind_of(level, at.value[at.begin[p]]), blocks);
       first_.push_back(known->second);
       if (!is_first) continue;
     } else
@@ -104,7 +128,7 @@ CutMatrix<Real>::CutMatrix(const StiffnessOfCells& cells, double unit, const Cut
   }
   block_.assign(9 * static_cast<std::size_t>(blocks) + 1, Real(0));
 
-  std::map<int, CellStiffnessMatrix> of_full;  // by size
+  std::map<std::pair<int, int>, CellStiffnessMatrix> of_full;
   for (std::size_t c = 0; c < level.corners.size(); ++c) {
     const Hexahedron& corners = level.corners[c];
     std::array<bool, 8> needed;
@@ -116,9 +140,9 @@ CutMatrix<Real>::CutMatrix(const StiffnessOfCells& cells, double unit, const Cut
     }
     if (!any) continue;
     const bool is_full = cells.full_alike && level.filled[c].fraction == 1;
-    const auto known = is_full ? of_full.find(level.cubes[c].size) : of_full.end();
+    const auto known = is_full ? of_full.find(kind_of(level, c)) : of_full.end();
     const CellStiffnessMatrix K = known != of_full.end() ? known->second : cells.of(c) / unit;
-    if (is_full) of_full.try_emplace(level.cubes[c].size, K);
+    if (is_full) of_full.try_emplace(kind_of(level, c), K);
     for (int m = 0; m < 8; ++m)
       for (int n = 0; n < 8 && needed[m]; ++n)
         for_each_carrier(carriers, corners[m], [&](int p, double v) {
@@ -129,6 +153,23 @@ CutMatrix<Real>::CutMatrix(const StiffnessOfCells& cells, double unit, const Cut
               for (int b = 0; b < 3; ++b) to[3 * a + b] += static_cast<Real>(v * w * K(3 * m + a, 3 * n + b));
           });
         });
+  }
+  add_bonds(level, unit, carriers);
+}
+
+template <class Real>
+void CutMatrix<Real>::add_bonds(const CutLevel& level, double unit, const Carriers& carriers) {
+  for (const InterfaceBond& bond : level.bonds) {
+    std::map<int, double> weights;  // of the points that carry the corners
+    for_each_corner(bond, [&](int n, double w) {
+      for_each_carrier(carriers, n, [&](int p, double share) { weights[p] += w * share; });
+    });
+    for (const auto& [p, v] : weights)
+      for (const auto& [q, w] : weights) {
+        Real* to = own_block(p, q);
+        for (int a = 0; a < 3; ++a)
+          for (int b = 0; b < 3; ++b) to[3 * a + b] += static_cast<Real>(v * w * bond.stiffness(a, b) / unit);
+      }
   }
 }
 

@@ -18,8 +18,8 @@ template <class Real>
 class CutMatrix {
  public:
   CutMatrix() = default;
-  /// Of the cells, in units of `unit` [N/m].  Rows at anchors, and those that are coupled with `fixed` unknowns (empty:
-  /// none), are not shared, so that they can be changed.
+  /// Of the cells and the bonds between them, in units of `unit` [N/m].  Rows at anchors, and those that are coupled
+  /// with `fixed` unknowns (empty: none), are not shared, so that they can be changed.
   CutMatrix(const StiffnessOfCells& cells, double unit, const CutLevel& level, const std::vector<char>& fixed);
   /// Rounded.
   template <class Other>
@@ -48,6 +48,7 @@ class CutMatrix {
   template <class Other>
   friend class CutMatrix;
   BlockRows<Real> view() const;
+  void add_bonds(const CutLevel& level, double unit, const Carriers& carriers);
   Real* own_block(int i, int j) { return const_cast<Real*>(block(i, j)); }
 
   std::vector<int> point_, row_;  ///< of a row, of a point

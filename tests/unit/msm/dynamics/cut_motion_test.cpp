@@ -5,7 +5,7 @@
 #include "msm/dynamics/time_step.h"
 #include "msm/models.h"
 #include "support/refined_cells.h"
-#include "support/solids.h"
+#include "support/two_materials.h"
 #include "support/zoo.h"
 
 namespace springproof::cut_motion_test {
@@ -13,7 +13,8 @@ namespace {
 
 const IsotropicMaterial material{1e4, 0.4, 1100};
 
-/// Round bars of two cells, lying anyhow; of the second some cells are halved once or twice.
+/// Round bars of two cells, lying anyhow; of the second and fourth some cells are halved once or twice, and the third
+/// and fourth are of two materials.
 std::vector<MassSpringModel> bars() {
   const double edge = 0.5;
   const Mesh body = test::mapped(test::cylinder(3, 8, 12), test::random_placement(2, edge));
@@ -21,7 +22,15 @@ std::vector<MassSpringModel> bars() {
   std::vector<MassSpringModel> bars;
   for (const VoxelGrid& g : {grid, test::halved_at_random(grid, 2, 8)})
     bars.push_back(build_cut(test::model("hybmss_avg"), cut_body(g, body), {}, Mesh{}, material).model);
+  const Mesh halves = test::with_materials(test::cylinder(3, 8, 12), [](const Vec3& x) { return x[2] > 1.5; });
+  const Mesh both = test::mapped(halves, test::random_placement(2, edge));
+  for (const VoxelGrid& g : {grid, test::halved_at_random(grid, 2, 8)}) {
+    bars.push_back(
+        build_cut(test::model("hybmss_avg"), cut_body(g, both), {}, Mesh{}, material, {{1e5, 0.3, 3000}}).model);
+    soften_bonds(bars.back(), material.density);
+  }
   EXPECT_GT(bars[1].network.cells.carried.size(), 50u);
+  EXPECT_GT(bars[3].network.bonds.size(), 20u);
   return bars;
 }
 
@@ -96,6 +105,23 @@ void expect_stable(const MassSpringModel& model) {
   EXPECT_LT(largest, 10 * start);
   options.time_step = 1.001 * *options.time_step;
   EXPECT_THROW(run_dynamics(model, material.density, no_loads(model.network), options), InputError);
+}
+
+// Bonds of one material with itself, of cells as small as a hundredth: the worst for the step.
+TEST(CutMotion, SoftenedBondsLeaveMostOfTheStep) {
+  const Mesh ball = test::ball_in_cube(8, {0.1, 0.2, -0.05});
+  const VoxelGrid grid{Vec3::Constant(-2), 0.5, {8, 8, 8}};
+  for (const double contrast : {1.0, 10.0}) {
+    MassSpringModel model =
+        build_cut(test::model("hybmss_avg"), cut_body(grid, ball), {}, Mesh{}, {1, 0.3, 1}, {{contrast, 0.3, 1}}).model;
+    const double stiff = safe_time_step(model, 1);
+    soften_bonds(model, 1);
+    const double soft = safe_time_step(model, 1);
+    MassSpringModel cells = model;
+    cells.network.bonds.clear();
+    EXPECT_GT(soft, 0.7 * safe_time_step(cells, 1)) << contrast;
+    EXPECT_LT(stiff, 0.8 * soft) << contrast;
+  }
 }
 
 TEST(CutMotion, IsStableAtTheSafeStep) {

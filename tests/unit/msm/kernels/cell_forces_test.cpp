@@ -12,7 +12,7 @@
 #include "msm/dynamics/time_step.h"
 #include "msm/laws/capabilities.h"
 #include "support/refined_cells.h"
-#include "support/solids.h"
+#include "support/two_materials.h"
 #include "support/zoo.h"
 
 namespace springproof::cell_forces_test {
@@ -28,6 +28,19 @@ MassSpringModel bar(const ModelParameters& parameters, double poisson_ratio = 0.
   VoxelGrid grid = test::grid_about(body, edge);
   if (halved > 0) grid = test::halved_at_random(grid, 2, halved);
   return build_cut(parameters, cut_body(grid, body), {"z_min"}, Mesh{}, {1e4, poisson_ratio, 1000}).model;
+}
+
+/// The same of three materials along its axis.
+MassSpringModel bar_of_three_materials(int halved) {
+  const Mesh straight = test::with_materials(test::cylinder(5, 8, 20), [](const Vec3& x) {
+    return x[2] < 1.75 ? 0 : x[2] < 3 ? 2 : 1;
+  });
+  const Mesh body = test::mapped(straight, test::random_placement(2, edge));
+  VoxelGrid grid = test::grid_about(body, edge);
+  if (halved > 0) grid = test::halved_at_random(grid, 2, halved);
+  return build_cut(test::model("hybmss_avg"), cut_body(grid, body), {"z_min"}, Mesh{}, {1e4, 0.3, 1000},
+                   {{3e5, 0.2, 1000}, {2e3, 0.49, 1000}})
+      .model;
 }
 
 /// The same with a form of its own in every cell, in which everything is coupled.
@@ -54,6 +67,8 @@ std::vector<MassSpringModel> models() {
       all.push_back({test::cut_network(), all.back().laws});  // less than a vector of cells
     }
   all.push_back({all.back().network, {*averaged_springs_of(all.back())}});  // without its anchors
+  all.push_back(bar_of_three_materials(0));
+  all.push_back(bar_of_three_materials(12));
   all.push_back(with_measured_cells(bar(test::model("hybmss_avg"))));
   all.push_back(with_measured_cells(bar(test::model("hybmss_avg"), 0.499)));
   const Mesh boxes = block_mesh({1.2, 1.6, 0.7}, {4, 3, 5});

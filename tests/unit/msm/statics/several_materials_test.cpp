@@ -1,0 +1,286 @@
+// Bodies of several materials: each is cut as a body of its own, and bonds tie them in the cubes that they share.
+#include <gtest/gtest.h>
+
+#include "msm/distribution/model_part.h"
+#include "msm/dynamics/natural_modes.h"
+#include "msm/embedding/supports.h"
+#include "msm/exchange/springs_file.h"
+#include "msm/laws/capabilities.h"
+#include "msm/models.h"
+#include "msm/multigrid/cut/cut_levels.h"
+#include "msm/statics/equilibrium.h"
+#include "msm/statics/mixed_form.h"
+#include "support/tolerances.h"
+#include "support/two_materials.h"
+#include "support/zoo.h"
+
+namespace springproof::several_materials_test {
+namespace {
+
+MassSpringModel model_of(const CutBody& cut, const std::vector<IsotropicMaterial>& materials,
+                         const std::vector<std::string>& held = {}) {
+  return build_cut(test::model("hybmss_avg"), cut, held, Mesh{}, materials[0], {materials.begin() + 1, materials.end()})
+      .model;
+}
+
+BoundaryConditions no_conditions(const Network& network) {
+  return {std::vector<char>(network.X.size(), 0), std::vector<int>(network.X.size(), -1),
+          NodalVectors::Zero(network.nodes(), 3), NodalVectors::Zero(network.nodes(), 3)};
+}
+
+Equilibrium solved(const MassSpringModel& model, const BoundaryConditions& bc,
+                   LinearSolver solver = LinearSolver::cholesky) {
+  LinearOptions options;
+  options.solver = solver;
+  options.tolerance = solver == LinearSolver::cholesky ? 1e-12 : 1e-8;
+  Equilibrium e = solve_linear(model, bc, options);
+  EXPECT_TRUE(e.ok) << e.message;
+  return e;
+}
+
+constexpr double length = 4, pull = 0.01;
+
+/// Force at the end x = 4 of a bar that is pulled by 0.01 and, if `confined`, cannot contract.
+double force_of_bar(const MassSpringModel& model, bool confined) {
+  const Network& network = model.network;
+  BoundaryConditions bc = no_conditions(network);
+  const auto fix = [&](int n, int axis, double u) {
+    bc.fixed[3 * n + axis] = 1;
+    bc.prescribed(n, axis) = u;
+  };
+  for (int n = 0; n < network.nodes(); ++n) {
+    const Vec3 x = network.X.row(n).transpose();
+    if (x[0] < 1e-9 || x[0] > length - 1e-9) fix(n, 0, x[0] < 1 ? 0 : pull);
+    for (int axis = 1; axis < 3; ++axis)
+      if (confined || x[axis] < 1e-9) fix(n, axis, 0);
+  }
+  const Equilibrium e = solved(model, bc);
+  double force = 0;
+  for (int n = 0; n < network.nodes(); ++n)
+    if (network.X(n, 0) > length - 1e-9) force += e.support(n, 0);
+  return force;
+}
+
+CutBody cut_layers(int axis, double at) {
+  return cut_body({Vec3::Zero(), 1, {4, 2, 2}}, test::layered_block({length, 2, 2}, {4, 2, 2}, axis, at));
+}
+
+double confined_modulus(const IsotropicMaterial& m) { return lame_lambda(m) + 2 * shear_modulus(m); }
+
+// An interface gives way like a thirtieth of a cell of the softer material.
+TEST(SeveralMaterials, InSeriesGiveWayAsTheirBonds) {
+  for (const double nu : {0.0, 0.3, 0.47})
+    for (const double contrast : {1e-4, 1.0, 10.0, 1e4})
+      for (const double at : {1.3, 2.5}) {
+        const IsotropicMaterial a{1, nu, 1}, b{contrast, nu, 1};
+        const auto modulus = [&](const IsotropicMaterial& m) {
+          return nu > 0.45 ? confined_modulus(m) : m.youngs_modulus;
+        };
+        const double bonds = (1 / modulus(a) + 1 / modulus(b)) / 2 / anchor_stiffness;
+        const double give = at / confined_modulus(a) + (length - at) / confined_modulus(b) + bonds;
+        const double force = force_of_bar(model_of(cut_layers(0, at), {a, b}), true);
+        EXPECT_NEAR(force, 4 * pull / give, 1e-6 * force) << nu << ' ' << contrast << ' ' << at;
+      }
+}
+
+TEST(SeveralMaterials, InParallelAreExact) {
+  for (const double contrast : {1e-3, 10.0, 1e3})
+    for (const double at : {0.4, 1.3}) {
+      const double force = force_of_bar(model_of(cut_layers(2, at), {{1, 0.3, 1}, {contrast, 0.3, 1}}), false);
+      const double expected = 2 * (at + contrast * (2 - at)) * pull / length;
+      EXPECT_NEAR(force, expected, test::patch_test * expected) << contrast << ' ' << at;
+    }
+}
+
+TEST(SeveralMaterials, ThatMeetInAPlaneOfTheLatticeAreExactWithoutBonds) {
+  const IsotropicMaterial a{1, 0.3, 1}, b{50, 0.45, 1};
+  const MassSpringModel model = model_of(cut_layers(0, 1), {a, b});
+  EXPECT_TRUE(model.network.bonds.empty());
+  const double expected = 4 * pull / (1 / confined_modulus(a) + 3 / confined_modulus(b));
+  EXPECT_NEAR(force_of_bar(model, true), expected, test::patch_test * expected);
+}
+
+// Means alone leave a hinge: singular.
+TEST(SeveralMaterials, InABarOfOneCellBendTogether) {
+  for (const double contrast : {1.0, 10.0}) {
+    const double t = 0.9, at = 2.4, L = 8;
+    const Mesh body = test::mapped(test::layered_block({L, t, t}, {8, 1, 1}, 0, at),
+                                   [&](const Vec3& x) -> Vec3 { return x + Vec3(0, 0.05, 0.05); });
+    const CutBody cut = cut_body({Vec3::Zero(), 1, {8, 1, 1}}, body);
+    const Mesh cubes = voxelise(cut.grid, body).mesh;
+    const EmbeddedModel built =
+        build_cut(test::model("hybmss_avg"), cut, {"x_min"}, cubes, {1, 0, 1}, {{contrast, 0, 1}});
+    const BoundaryConditions bc =
+        transfer({PrescribedDisplacement{"x_min", {0.0, 0.0, 0.0}}, PatchForce{"x_max", Vec3(0, 0, 1)}}, cubes,
+                 built.embedding, built.model.network, 1, Kinematics::linear);
+    const Equilibrium e = solved(built.model, bc);
+    const PatchShares& end = built.embedding.patches.at("x_max");
+    const double I = std::pow(t, 4) / 12, rest = std::pow(L - at, 3) / 3;
+    const double expected = ((std::pow(L, 3) / 3 - rest) + rest / contrast) / I;
+    EXPECT_NEAR(e.displacement.col(2).dot(end.area) / end.area.sum(), expected, 0.05 * expected) << contrast;
+  }
+}
+
+/// A ball of two cells' radius or more in the exact field around it, on the surface of a cube of two diameters.
+struct Ball {
+  test::BallInSpace exact;
+  int across;  ///< cells
+  Vec3 centre;
+  MassSpringModel model = model_of(
+      cut_body({Vec3::Constant(-2), 2.0 / across, {2 * across, 2 * across, 2 * across}}, test::ball_in_cube(8, centre)),
+      {exact.around, exact.inside});
+
+  Equilibrium solve(LinearSolver solver) const {
+    const Network& network = model.network;
+    BoundaryConditions bc = no_conditions(network);
+    for (int n = 0; n < network.nodes(); ++n) {
+      const Vec3 x = network.X.row(n).transpose();
+      if (x.cwiseAbs().maxCoeff() < 2 - 1e-9) continue;
+      bc.prescribed.row(n) = exact.displacement(x - centre).transpose();
+      std::fill_n(bc.fixed.begin() + 3 * n, 3, 1);
+    }
+    return solved(model, bc, solver);
+  }
+
+  /// Mean strain inside.
+  Eigen::Matrix3d strain(const Equilibrium& e) const {
+    const Network& network = model.network;
+    Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+    double volume = 0;
+    for (std::size_t c = 0; c < network.cells.size(); ++c) {
+      if (network.cells.material(c) != 1) continue;
+      const Eigen::Matrix3d H = mean_gradient(network, c, e.displacement);
+      sum += filled_volume(network, c) / 2 * (H + H.transpose());
+      volume += filled_volume(network, c);
+    }
+    return sum / volume;
+  }
+
+  /// Relative error of the mean stress inside.
+  double stress_error(const Equilibrium& e) const {
+    const Eigen::Matrix3d s = strain(e);
+    const Eigen::Matrix3d stress =
+        lame_lambda(exact.inside) * s.trace() * Eigen::Matrix3d::Identity() + 2 * shear_modulus(exact.inside) * s;
+    return (stress - exact.stress()).norm() / exact.stress().norm();
+  }
+};
+
+const Eigen::Matrix3d tension = Eigen::Vector3d(-0.3, -0.3, 1).asDiagonal(), pressure = -Eigen::Matrix3d::Identity();
+
+TEST(SeveralMaterials, ABallHasTheStressOfEshelby) {
+  for (const Eigen::Matrix3d& far : {tension, pressure}) {
+    const Ball stiff{{{1, 0.3, 1}, {1e4, 0.3, 1}, far}, 4, {0.11, 0.05, -0.17}};
+    EXPECT_LE(stiff.stress_error(stiff.solve(LinearSolver::cholesky)), 0.1);
+    const Ball volume{{{1, 0.3, 1}, {1, 0.499, 1}, far}, 4, {0.11, 0.05, -0.17}};
+    EXPECT_LE(volume.stress_error(volume.solve(LinearSolver::cholesky)), 0.02);
+  }
+}
+
+TEST(SeveralMaterials, OfTheSameModuliAreNearlyOneMaterial) {
+  for (const Eigen::Matrix3d& far : {tension, pressure}) {
+    const Ball same{{{1, 0.3, 1}, {1, 0.3, 1}, far}, 8, {0.06, 0.02, -0.09}};
+    EXPECT_LE((same.strain(same.solve(LinearSolver::multigrid)) - far).norm(), 0.02 * far.norm());
+  }
+}
+
+/// Iterations of multigrid for the ball in a cube that stands on a face and is pulled askew at the opposite one.
+int iterations(const Mesh& body, const std::vector<IsotropicMaterial>& materials) {
+  const CutBody cut = cut_body({Vec3::Constant(-2), 0.25, {16, 16, 16}}, body);
+  const Mesh cubes = voxelise(cut.grid, body).mesh;
+  const EmbeddedModel built = build_cut(test::model("hybmss_avg"), cut, {"z_min"}, cubes, materials[0],
+                                        {materials.begin() + 1, materials.end()});
+  const BoundaryConditions bc =
+      transfer({PrescribedDisplacement{"z_min", {0.0, 0.0, 0.0}}, PatchForce{"z_max", Vec3(0.3, 0, 1)}}, cubes,
+               built.embedding, built.model.network, 1, Kinematics::linear);
+  return solved(built.model, bc, LinearSolver::multigrid).iterations;
+}
+
+TEST(SeveralMaterials, TakeTheIterationsOfOne) {
+  const Mesh body = test::ball_in_cube(8, {0.06, 0.02, -0.09});
+  Mesh of_one = body;
+  of_one.materials.clear();
+  const int least = iterations(of_one, {{1, 0.3, 1}});
+  for (const double contrast : {1e-4, 1e-2, 1.0, 1e2, 1e4})
+    EXPECT_LE(iterations(body, {{1, 0.3, 1}, {contrast, 0.3, 1}}), 1.5 * least) << contrast;
+}
+
+// Of cells of two sizes, in a field at random.
+TEST(SeveralMaterials, HaveTheirTangentInTheMatrixOfTheMultigrid) {
+  VoxelGrid grid = with_halved_cubes({Vec3::Constant(-2), 1, {4, 4, 4}});
+  halve_cell(grid, {2, 2, 4});
+  const MassSpringModel model =
+      model_of(cut_body(grid, test::ball_in_cube(8, {0.1, 0, 0})), {{1, 0.3, 1}, {100, 0.47, 1}});
+  const Network& network = model.network;
+  ASSERT_FALSE(network.bonds.empty());
+  ASSERT_FALSE(network.cells.carried.empty());
+  const AnchoredNodes nodes(network, std::vector<char>(network.X.size(), 0));
+  const CutLevel level = cut_levels(network, nodes).front();
+  const CutMatrix<double> cells(averaged_cells(*averaged_springs_of(model), level), 1, level, {});
+  Eigen::VectorXd x = flat(test::noise(network.nodes(), 1, 1)), y, expected;
+  for (const CarriedPoint& c : network.cells.carried) x.segment<3>(3 * c.point).setZero();
+  nodes.multiply(cells, 1, x, y);
+  tangent(model, network.X).multiply(x, expected);
+  EXPECT_LE((y - expected).norm(), 1e-13 * expected.norm());
+}
+
+// Energy, forces and tangent of the bonds belong to each other, at large strain too.
+TEST(SeveralMaterials, HaveTheForcesOfTheirEnergy) {
+  const MassSpringModel model = model_of(cut_layers(0, 1.3), {{1, 0.3, 1}, {20, 0.47, 1}});
+  const Network& network = model.network;
+  ASSERT_FALSE(network.bonds.empty());
+  const NodalVectors x = network.X + test::noise(network.nodes(), 0.1, 1), d = test::noise(network.nodes(), 1, 2);
+  const double h = 1e-5;
+  const double slope = (energy(model, x + h * d) - energy(model, x - h * d)) / (2 * h);
+  const double expected = -forces(model, x).cwiseProduct(d).sum();
+  EXPECT_NEAR(slope, expected, test::finite_difference * std::abs(expected));
+  Eigen::VectorXd Kd;
+  tangent(model, x).multiply(flat(d), Kd);
+  const Eigen::VectorXd change = flat(forces(model, x - h * d) - forces(model, x + h * d)) / (2 * h);
+  EXPECT_LE((Kd - change).norm(), test::finite_difference * Kd.norm());
+}
+
+/// A bar of two materials pulled to 1.2 of its length, its sides free.
+TEST(SeveralMaterials, AreInEquilibriumAtLargeStrain) {
+  const double nu = 0.3;
+  const MassSpringModel model = model_of(cut_layers(2, 1.3), {{1, nu, 1}, {20, nu, 1}});
+  const Network& network = model.network;
+  BoundaryConditions bc = no_conditions(network);
+  const double e = std::log(1.2);
+  for (int n = 0; n < network.nodes(); ++n) {
+    const Vec3 x = network.X.row(n).transpose();
+    const double across = std::exp(-nu * e) - 1;  // Hencky's law
+    bc.prescribed.row(n) = Vec3(0.2 * x[0], across * x[1], across * x[2]).transpose();
+  }
+  const NodalVectors f = forces(model, network.X + bc.prescribed);
+  double on_end = 0;
+  for (int n = 0; n < network.nodes(); ++n) {
+    if (network.X(n, 0) > length - 1e-9) on_end -= f(n, 0);
+    if (network.X(n, 0) > 1e-9 && network.X(n, 0) < length - 1e-9) EXPECT_LE(f.row(n).norm(), 1e-10);
+  }
+  EXPECT_NEAR(on_end, 2 * (1.3 + 20 * 0.7) * e / 1.2, 1e-10 * on_end);
+}
+
+TEST(SeveralMaterials, AreRefusedByWhatKnowsOne) {
+  const CutBody cut = cut_layers(0, 1.3);
+  const IsotropicMaterial one{1, 0.3, 1000};
+  const MassSpringModel model = model_of(cut, {one, {2, 0.3, 1000}});
+  EXPECT_FALSE(can(model, Capability::mass_average));
+  EXPECT_THROW(part_of(model, std::vector<char>(model.network.nodes(), 1)), std::invalid_argument);
+  SpringsFile file;
+  file.model = model;
+  EXPECT_THROW(springs_as_json(file), std::invalid_argument);
+  const Mesh cubes = voxelise(cut.grid, test::layered_block({length, 2, 2}, {4, 2, 2}, 0, 1.3)).mesh;
+  EXPECT_THROW(build_embedded(test::model("hybmss"), cubes, one), InputError);
+  EXPECT_THROW(model_of(cut, {one}), InputError);
+  EXPECT_THROW(saddle_point_at_rest(model, std::vector<char>(model.network.X.size(), 0)), std::runtime_error);
+}
+
+TEST(SeveralMaterials, HaveTheirOwnDensities) {
+  const CutBody cut = cut_layers(0, 1.3);
+  const MassSpringModel model = model_of(cut, {{1, 0.3, 1000}, {1, 0.3, 3000}});
+  EXPECT_NEAR(masses(model.network, 1000).sum(), 4 * (1.3 * 1000 + 2.7 * 3000), 1e-6);
+  EXPECT_NEAR(mass_matrix(model.network, 1000, 0.5).sum(), 4 * (1.3 * 1000 + 2.7 * 3000), 1e-6);
+}
+
+}  // namespace
+}  // namespace springproof::several_materials_test
