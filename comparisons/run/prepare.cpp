@@ -247,6 +247,22 @@ void check_masses(const Experiment& e, const Mesh& mesh) {
                                      mass.name, X[0], X[1], X[2], e.body.size[0], e.body.size[1], e.body.size[2]));
 }
 
+/// @throws InputError at a model that is of one material, in a case of several.
+void check_region_models(const PreparedCase& prepared) {
+  const Experiment& e = prepared.experiment;
+  if (e.regions.empty()) return;
+  for (std::size_t m = 0; m < prepared.models.size(); ++m) {
+    const ModelParameters& p = prepared.models[m];
+    const bool can = *p.cut && !*p.coarsened && !p.springs && p.has(Extension::averaging) && e.body.accuracies.empty();
+    if (is_external(e.models[m]) || can) continue;
+    throw InputError(
+        e.models[m].where,
+        fmt::format("compare.models: {} is of one material in a body (allowed beside [[region]]: hybmss_avg in "
+                    "cut cells of one size; or models = [])",
+                    e.models[m].label));
+  }
+}
+
 /// Checks patches, loads, models and measures of the case on one lattice.
 void try_lattice(PreparedCase& prepared, const Lattice& lattice) {
   const Experiment& e = prepared.experiment;
@@ -324,6 +340,7 @@ PreparedCase prepare_lattices(const Experiment& experiment) {
     check_fracture_models(experiment, prepared.models);
     choose_cut_cells(prepared);
     choose_measured_cells(prepared);
+    check_region_models(prepared);
     check_vertex_options(prepared);
     prepared.body.geo = find_geo(experiment.body, experiment.file);
     progress::phase("cutting the body");

@@ -40,17 +40,19 @@ MaterialRegion read_region(const TomlValue& value, double density) {
 
 /// What of a case is computed of one material alone, and what it may be instead; empty: nothing.
 std::optional<std::pair<std::string, SourceLocation>> of_one_material(const Experiment& e) {
-  if (!e.models.empty())
-    return {{fmt::format("compare.models: {} is of one material (allowed: models = [] in [compare], with elements in "
-                         "[reference])",
-                         e.models.front().label),
-             e.models.front().where}};
+  if (!e.models.empty() && !e.body.is_voxels())
+    return {
+        {fmt::format("compare.models: {} on a block is of one material (allowed: voxels or voxel_edge_m in [body]; or "
+                     "models = [], with elements in [reference])",
+                     e.models.front().label),
+         e.models.front().where}};
   const SourceLocation& region = e.regions.front().where;
   const auto says = [&](const char* what, const char* allowed) {
     return std::pair{fmt::format("region: '{}': {} (allowed: {})", e.regions.front().name, what, allowed), region};
   };
   if (e.dynamics)
     return {{"dynamics: bodies of several materials are not moved (allowed: equilibria)", e.dynamics->where}};
+  if (e.parts) return says("the parts of errors are of one material", "no parts in [compare]");
   if (e.fracture) return says("drying bodies are of one material", "no [fracture]");
   if (e.kinematics != "linear") return says("large strain is of one material", "kinematics = \"linear\"");
   if (e.line || !e.exact.empty()) return says("exact fields are of one material", "no [line] and no exact");

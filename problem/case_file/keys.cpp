@@ -292,7 +292,7 @@ constexpr KeyTable tables[] = {
   {"patch.facing",               "",                                 "",                                                            facing_keys},
   {"patch.near",                 "",                                 "",                                                            near_keys},
   {"material",                   "[material]",                       "Two moduli. A single number goes with each of a list; two lists are read in pairs.", material_keys},
-  {"region",                     "[[region]]",                       "A part of the body of another material; where two overlap, the later one. Finite elements at small strain: models = [].", region_keys},
+  {"region",                     "[[region]]",                       "A part of the body of another material; where two overlap, the later one. At small strain, by finite elements and hybmss_avg in cut cells.", region_keys},
   {"load.displacement_m",        "a displacement",                   "",                                                            displacement_keys},
   {"load.displacement_gradient", "an affine displacement",           "",                                                            affine_keys},
   {"load.rotation_deg",          "a rotation",                       "",                                                            rotation_keys},

@@ -26,6 +26,7 @@ displacement_m = [0, 0, 0]
 [reference]
 elements = ["p2"]
 )";
+const std::string block = test::small_case;
 const std::string alone = "[compare]\nmodels = []\n";
 const std::string tumour =
     "[[region]]\nname = \"tumour\"\nvolume = \"t\"\nshear_modulus_Pa = 1e5\nbulk_modulus_Pa = 1e6\n";
@@ -59,7 +60,9 @@ TEST(CaseWithRegions, SaysOnceWhereEachLiesAndOfWhat) {
 }
 
 TEST(CaseWithRegions, IsRefusedWhereOneMaterialIsKnown) {
-  EXPECT_WORDS(message_of(body + tumour), "hybmss is of one material");
+  EXPECT_WORDS(message_of(block + tumour), "hybmss on a block is of one material");
+  EXPECT_WORDS(message_of(body + "[compare]\nmodels = [\"hybmss_avg\"]\nparts = true\n" + tumour),
+               "the parts of errors");
   EXPECT_WORDS(message_of("kinematics = \"hencky\"\n" + body + alone + tumour), "large strain is of one material");
   EXPECT_WORDS(message_of("kinematics = \"hencky\"\n" + body + alone + tumour + "[dynamics]\nduration_s = 1\n"),
                "bodies of several materials are not moved");
