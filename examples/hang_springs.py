@@ -12,7 +12,7 @@ try:
     import numpy as np, scipy.sparse as sp
     from scipy.sparse.linalg import splu
 except ImportError as missing: sys.exit(f"{missing}: needs NumPy and SciPy (Debian: apt-get install python3-numpy python3-scipy)")
-from springs import load, forces, carry  # or, with the package: from springproof.springs import ...
+from springs import load, forces, carry, embed  # or, with the package: from springproof.springs import ...
 
 def colours_of(s, n):
     """Nodes of one colour move no force in common: the tangent takes six evaluations of the forces per colour."""
@@ -42,7 +42,7 @@ def tangent(s, x, colour, reach, h):
             K = K + sp.csr_matrix((change[colour[reach.col], reach.row, i], (3 * reach.row + i, 3 * reach.col + axis)), K.shape)
     return K
 
-def rest(s, held, external):
+def rest(s, held, external, say=print):
     """Positions at which the forces are in equilibrium with the external ones [N], n x 3."""
     X, n = s["nodes"]["position_m"], len(s["nodes"]["position_m"])
     free, support = s["nodes"]["mass_kg"] > 0, sp.csr_matrix((n, n))
@@ -54,11 +54,13 @@ def rest(s, held, external):
     else:
         free = free & ~np.isin(np.arange(n), s["patches"][held])
     (colour, reach), dofs, x, largest = colours_of(s, n), np.flatnonzero(np.repeat(free, 3)), X.copy(), abs(external).max()
+    K = tangent(s, X, colour, reach, 1e-6 * np.ptp(X))
+    small = max(1e-9 * largest, 1e-14 * abs(K).max() * np.ptp(X))  # a light load on a stiff body: round-off of the forces
     def newton(x, share):  # None: no equilibrium found from here
         for _ in range(12):
             r = (forces(s, x) + share * external - support @ (x - X)).ravel()[dofs]
-            print(f"  {share:.3f} of the load: residual {abs(r).max() / largest:.1e}")
-            if not 1e-9 * largest < abs(r).max() < 1e3 * largest: return x if abs(r).max() <= 1e-9 * largest else None
+            say(f"  {share:.3f} of the load: residual {abs(r).max() / largest:.1e}")
+            if not small < abs(r).max() < 1e3 * largest: return x if abs(r).max() <= small else None
             K = (tangent(s, x, colour, reach, 1e-6 * np.ptp(X)) + sp.kron(support, sp.identity(3))).tocsc()
             x = x.copy()
             x.ravel()[dofs] += splu(K[dofs][:, dofs]).solve(r)

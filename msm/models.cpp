@@ -198,9 +198,7 @@ EmbeddedModel build_cut(const ModelParameters& p, const CutBody& body, const std
         "{}: cannot be made of cut cells (allowed: lattices of cells without momentum dispersion)", p.row.name));
   if (p.coarsened.value_or(false))
     throw InputError(
-        fmt::format("{}: coarsened: measured cells are those of a case (allowed: springproof compare and "
-                    "frequencies; else coarsened = false)",
-                    p.row.name));
+        fmt::format("{}: coarsened: averaged springs alone are built here (allowed: coarsened = false)", p.row.name));
   EmbeddedModel built;
   std::vector<IsotropicMaterial> materials = {material};
   materials.insert(materials.end(), regions.begin(), regions.end());

@@ -21,7 +21,7 @@ set(long
     "kot_2014/fig.*" "kot_2015/fig_(7|8|1[0-9])"
     "golec_2019/(tables/(table2_.*|table3_tension_20|table4_shear_20|table5_torsion_45deg)|figures/fig_5_2MPa)"
     "golec_2019/ten_seconds/(table2_.*|table3_.*|table4_shear_20|table5_torsion_45deg)"
-    "bodies/(rabbit_.*|hand_pressed|bar_networks)" "cost/.*" "large_strain/(tension|bending)"
+    "bodies/(rabbit_.*|hand_pressed|bar_networks)" "cost/.*" "large_strain/(tension|bending|rabbit_measured)"
     "motion/(released_bar|struck_bar_averaged|falling_rabbit)" "boxes/struck_bar"
     "measured/.*" "verification/(manufactured_(linear|quadratic)_straight|macneal_.*_out_of_plane)")
 
@@ -69,6 +69,13 @@ set_tests_properties(experiment.calibration_motion PROPERTIES LABELS long TIMEOU
 add_test(NAME experiment.ten_bodies COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/bodies/ten_bodies.py
                                             ${CMAKE_BINARY_DIR}/experiments/ten_bodies $<TARGET_FILE:springproof>)
 set_tests_properties(experiment.ten_bodies PROPERTIES LABELS long TIMEOUT 3600)
+
+if(SPRINGPROOF_PYTHON)  # that has NumPy
+  add_test(NAME experiment.one_support
+           COMMAND ${SPRINGPROOF_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/bodies/one_support.py
+                   ${CMAKE_BINARY_DIR}/experiments/one_support $<TARGET_FILE:springproof> ${CMAKE_SOURCE_DIR}/examples ${CMAKE_C_COMPILER})
+  set_tests_properties(experiment.one_support PROPERTIES LABELS long TIMEOUT 1800)
+endif()
 
 add_test(NAME experiment.figures COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/source/figures.sh ${CMAKE_SOURCE_DIR} ${CMAKE_BINARY_DIR}/experiments)
 set(drawn ${cases})

@@ -19,13 +19,6 @@
 namespace springproof {
 namespace {
 
-constexpr double largest_ratio = 0.3;  // Poisson's, at which cells are measured
-
-/// The law that cells are measured with, per unit of Young's modulus.
-AveragedSprings measuring_law(const ModelParameters& parameters, const IsotropicMaterial& material) {
-  return averaged_law(parameters, {1, std::min(material.poisson_ratio, largest_ratio), 1});
-}
-
 /// Collects the constants of a law.
 struct Constants {
   std::string all;

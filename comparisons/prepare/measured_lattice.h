@@ -14,9 +14,6 @@
 
 namespace springproof {
 
-/// Edge of the cells over that of those in which they are measured.
-inline constexpr int measuring_ratio = 3;
-
 /// The cells of one lattice of a body as measured, for any model and material of a case.
 class MeasuredLattice {
  public:

@@ -30,7 +30,6 @@ namespace {
 // Tetrahedra of the finest mesh: with quadratic elements 100,000 unknowns, some five seconds of one core.  At large
 // strain a third of them, which take a minute.
 constexpr int finest_tetrahedra = 20000, finest_at_large_strain = 7000;
-constexpr double mesh_ratio = 1.5;   // edges of one mesh over those of the next finer one
 constexpr double finer_at_rims = 4;  // edges of the finest mesh over those where held patches end on a smooth surface
 
 MeshRequest body_request(const PreparedCase& prepared) {
@@ -104,8 +103,9 @@ void mesh_the_body(MeshRequest request, PreparedCase& prepared, std::string& hin
   request.edge = e.reference.edge;
   const bool large_strain = e.model_kinematics() == Kinematics::finite && !e.dynamics;
   request.tetrahedra = large_strain ? finest_at_large_strain : finest_tetrahedra;
-  if (!e.reference.elements.empty() || e.reference.in_time) request.coarser = {mesh_ratio * mesh_ratio, mesh_ratio};
-  MeshedBody body = mesh_body(request);
+  const bool alone = e.reference.elements.empty() && !e.reference.in_time;
+  if (!alone) request.coarser = {reference_ratios.begin(), reference_ratios.end()};
+  MeshedBody body = alone ? mesh_to_cut(request) : mesh_body(request);
   prepared.body.notes = {size_note(body.mesh)};
   prepared.body.notes.insert(prepared.body.notes.end(), body.notes.begin(), body.notes.end());
   hint = scale_hint(body.mesh, e.body);
@@ -199,20 +199,6 @@ std::string refinement_note(const RefinedBody& refined, double accuracy) {
       refined.reached ? "" : ", which smaller cells than these would take");
 }
 
-/// How far measured cells are off.
-/// @throws std::invalid_argument where averaged springs are as good.
-std::string measured_note(const Lattice& lattice, const MeasuredBody& measured) {
-  constexpr double worth = 0.7;  // of the error of averaged springs
-  const std::string says = fmt::format(
-      "{} cells measured in cells of a third of their edge: under loads that they were not measured by they "
-      "are {:.2g} % off these, averaged springs {:.2g} %",
-      lattice.cut->cells.size(), 100 * measured.error, 100 * measured.error_of_averaged);
-  if (measured.error > worth * measured.error_of_averaged)
-    throw std::invalid_argument("coarsened: " + says +
-                                ", which is not worth it; take smaller cells, or averaged springs");
-  return measured.as_averaged == 0 ? says : fmt::format("{}; {} keep averaged springs", says, measured.as_averaged);
-}
-
 /// Measures the cells of a lattice for all models and materials that need it, and notes how far they are off.
 /// @throws std::invalid_argument where averaged springs are as good.
 void measure_lattice(PreparedCase& prepared, Lattice& lattice) {
@@ -235,7 +221,7 @@ void measure_lattice(PreparedCase& prepared, Lattice& lattice) {
     for (const IsotropicMaterial& material : prepared.experiment.materials) {
       if (!p.coarsened.value_or(false)) continue;
       const MeasuredBody& measured = lattice.measured->measured(p, material);
-      if (noted.insert(&measured).second) prepared.body.notes.push_back(measured_note(lattice, measured));
+      if (noted.insert(&measured).second) prepared.body.notes.push_back(describe(measured));
     }
 }
 

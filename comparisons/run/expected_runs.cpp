@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "comparisons/models/motion_reference.h"
 #include "comparisons/reference/grid_cost.h"
@@ -136,6 +137,13 @@ bool measures_cells(const Experiment& e) {
   });
 }
 
+/// Edge [m] of the cells of a lattice that is not meshed yet; of a file, whose size is not known, infinite.
+double unmeshed_edge(const Body& body, std::size_t lattice) {
+  if (!body.voxel_edges.empty()) return body.voxel_edges[std::min(lattice, body.voxel_edges.size() - 1)];
+  const double volume = (body.is_voxels() ? share_of_the_box : 1) * body.size.prod();
+  return volume > 0 ? std::cbrt(volume / cubes_of(body, lattice)) : std::numeric_limits<double>::infinity();
+}
+
 double unmeshed_unknowns(const Body& body, std::size_t lattice, int degree) {
   if (!body.is_voxels()) return unknowns(body.cells[lattice], degree);
   return 3 * nodes_per_cube * cubes_of(body, lattice) * (degree == 1 ? 1 : 8);
@@ -195,9 +203,8 @@ double unmeshed_seconds(const Experiment& e, const IsotropicMaterial& material) 
       if (voxels && e.parts && nodal <= 3 * nodes_per_cube * most_refined_cubes)
         for (const int times : {1, 8}) runs.grid(times * unmeshed_unknowns(e.body, i, 2), true);
     }
-    const double edge = std::cbrt((voxels ? share_of_the_box : 1) * e.body.size.prod() / cubes_of(e.body, i));
     if (allowed(nodal))
-      for (const ModelChoice& model : e.models) runs.all.push_back(runs.model(model, nodal, edge));
+      for (const ModelChoice& model : e.models) runs.all.push_back(runs.model(model, nodal, unmeshed_edge(e.body, i)));
   }
   if (e.reference.in_time && !voxels) {
     PreparedCase unmeshed;

@@ -12,7 +12,8 @@ namespace springproof::fem::assembled {
 AssembledOperator::AssembledOperator(const ElasticSystem& system, std::optional<Law> law)
     : system_(system),
       law_(law),
-      spaces_(std::make_unique<Spaces>(system, law, system.dof_handler, system.constrained)) {
+      spaces_(std::make_unique<Spaces>(system, law, system.dof_handler, system.constrained)),
+      most_factored_(system.most_factored) {
   if (system.degree == 2 && !system.plain_gamg) coarse_ = std::make_unique<CoarseSpaces>(system, *spaces_);
   assemble_stiffness(nullptr);
   state_ = vector();
@@ -34,7 +35,7 @@ void AssembledOperator::assemble_stiffness(const DofVector* deformed_by) {
   spaces_->assemble_stiffness(deformed_by, *smoothed_);
   const dealii::Mapping<3>& mapping = *system_.body.mapping;
   if (!coarse_) {
-    multigrid_ = std::make_unique<Multigrid>(*smoothed_, mapping, spaces_->u, system_.most_factored);
+    multigrid_ = std::make_unique<Multigrid>(*smoothed_, mapping, spaces_->u, most_factored_);
     return;
   }
   DofVector at_corners;
@@ -42,7 +43,7 @@ void AssembledOperator::assemble_stiffness(const DofVector* deformed_by) {
   coarse_->spaces.assemble_stiffness(deformed_by ? &at_corners : nullptr, *coarse_->matrix);
   multigrid_ = std::make_unique<Multigrid>(
       *smoothed_, mapping, LinearLevel{*coarse_->matrix, *coarse_->interpolation, *coarse_->dof_handler},
-      system_.most_factored);
+      most_factored_);
 }
 
 namespace {
@@ -171,6 +172,15 @@ void AssembledOperator::prepare(const MixedVector& x) {
   cycles_when_new_ = 0;
 }
 
+bool AssembledOperator::factorise(const MixedVector& x) {
+  if (!coarse_ || system_.dof_handler.n_dofs() > most_factored_for_thin_bodies) return false;
+  coarse_.reset();
+  most_factored_ = most_factored_for_thin_bodies;
+  assemble_stiffness(law_ ? &x.u : nullptr);
+  cycles_ = cycles_when_new_ = 0;
+  return true;
+}
+
 void AssembledOperator::clear_constrained(DofVector& f) const {
   for (const unsigned int i : system_.constrained)
     if (spaces_->u_dofs.owned.is_element(i)) f(i) = 0;
@@ -197,7 +207,7 @@ CellPressures AssembledOperator::pressures(const MixedVector& x) const {
 
 ElasticAnswer solve(const ElasticSystem& system, const DofVector& load, DofVector& displacement) {
   start_mpi();
-  const AssembledOperator K(system, std::nullopt);
+  AssembledOperator K(system, std::nullopt);
   ElasticAnswer answer = solve_linear(K, system, load, displacement);
   answer.method = (system.form == Form::mixed ? "GMRES, " : "CG, ") + K.preconditioner();
   return answer;

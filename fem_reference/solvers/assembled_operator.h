@@ -33,6 +33,10 @@ class AssembledOperator {
   double linearise(MixedVector& f, const MixedVector& x);
   /// Rebuilds the multigrid for the deformed body, if the current one has become slow.
   void prepare(const MixedVector& x);
+  /// Factors of the stiffness of the body deformed by x (under small strain, of the undeformed one) in place of the
+  /// multigrid. Linear elements lock in thin bodies and are of no use below quadratic ones there.
+  /// @return false if that is so already, or if it has more rows than `most_factored_for_thin_bodies`
+  bool factorise(const MixedVector& x);
 
   const std::string& preconditioner() const { return multigrid_->name(); }  ///< of the displacements, for the report
 
@@ -50,6 +54,7 @@ class AssembledOperator {
   MixedVector state_;                       ///< state of the last linearise()
   std::unique_ptr<SparseMatrix> smoothed_;  ///< fine-level matrix of the multigrid
   std::unique_ptr<CoarseSpaces> coarse_;    ///< for quadratic elements: the linear ones
+  int most_factored_;                       ///< rows, of the level that is factored
   std::unique_ptr<Multigrid> multigrid_;
   std::unique_ptr<SparseMatrix> mass_;  ///< pressure mass matrix
   DofVector inverse_mass_;              ///< its diagonal, inverted

@@ -126,4 +126,18 @@ void add_linear_coarse_space(const Mesh& coarse, const std::function<Vec3(const 
   system.below = [below](LevelVector& x, const LevelVector& b) { below->cycle(x, b); };
 }
 
+std::function<void(DofVector&, const DofVector&)> factored_stiffness(const ElasticSystem& system) {
+  if (system.dof_handler.n_dofs() > most_factored_for_thin_bodies) return {};
+  start_mpi();
+  const auto shear = std::make_shared<ElasticSystem>(system);
+  if (shear->form == Form::mixed) {
+    shear->form = Form::pointwise;
+    shear->lambda = 0;
+  }
+  shear->plain_gamg = true;
+  shear->most_factored = most_factored_for_thin_bodies;
+  const auto factors = std::make_shared<assembled::AssembledOperator>(*shear, std::nullopt);
+  return [shear, factors](DofVector& z, const DofVector& r) { factors->precondition_displacement(z, r); };
+}
+
 }  // namespace springproof::fem

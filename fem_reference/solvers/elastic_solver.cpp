@@ -83,6 +83,7 @@ class LinearOperator {
   void couple(Vector<double>& f, const Vector<double>& p) const { with_pressure_->couple(f, p); }
   void clear_constrained(Vector<double>& f) const { stiffness_.clear_constrained(f); }
   CellPressures pressures(const MixedVector& x) const { return with_pressure_->pressures(x); }
+  bool factorise(const MixedVector&) { return false; }
 
  private:
   bool mixed_;
@@ -98,6 +99,7 @@ class TangentOperator : public FiniteOperator<degree> {
       : FiniteOperator<degree>(base, law, system.form, system.lambda), multigrid_(system, smoothed(system)) {}
 
   void prepare(const MixedVector& x) { multigrid_.deform(x.u); }
+  bool factorise(const MixedVector&) { return false; }
   void precondition_displacement(Vector<double>& z, const Vector<double>& r) const { multigrid_.vmult(z, r); }
 
  private:

@@ -19,13 +19,15 @@ namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE {
 //   couple(f, p)           forces of pressures on unconstrained degrees of freedom
 //   clear_constrained(f)   zero where displacement is prescribed
 //   pressures(x)           CellPressures
+//   factorise(x)           precondition_displacement by factors of the stiffness (of the mixed form of its shear part)
+//                          at the state x from now on; false if it is so already, or they would be too large
 template <typename Operator>
-ElasticAnswer solve_linear(const Operator& K, const ElasticSystem& system, const DofVector& load,
-                           DofVector& displacement) {
+ElasticAnswer solve_linear(Operator&& K, const ElasticSystem& system, const DofVector& load, DofVector& displacement) {
   constexpr int most_stored = 100;  // vectors of GMRES, twice
+  constexpr double slow = 0.1;      // reduction of the residual by so many
   const bool mixed = system.form == Form::mixed;
   const int most_repeats = mixed ? 20 : 6;
-  const BlockTriangular<Operator> precondition(K, system);
+  const BlockTriangular<std::remove_cvref_t<Operator>> precondition(K, system);
   const ResidualProduct dot(system);
   int products = 0;
   const auto multiply = [&](MixedVector& y, const MixedVector& v) {
@@ -56,6 +58,7 @@ ElasticAnswer solve_linear(const Operator& K, const ElasticSystem& system, const
                                         : conjugate_gradients(multiply, precondition, r, reduction, 2000, dx);
     answer.iterations += outcome.iterations;
     x.add(1, dx);
+    if (outcome.reduction > slow) K.factorise(x);
   }
   displacement = x.u;
   answer.internal_force = f.u;

@@ -18,6 +18,7 @@ namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE {
 //                              smallest det F; f and the tangent are valid only if it is positive
 //   prepare(x)                 makes the preconditioner fit the state x
 //   precondition_pressure(y, x)  its pressure part
+// Where GMRES stalls, factorise() is tried once.
 template <typename Operator>
 class Newton {
  public:
@@ -107,7 +108,6 @@ class Newton {
   // stability.
   bool correct(double eta, FiniteAnswer& answer) {
     K_.prepare(x_);
-    dx_.sadd(0, 0, dx_);
     const BlockTriangular<Operator> precondition(K_, system_);
     int products = answer.iterations;
     const auto multiply = [&](MixedVector& y, const MixedVector& v) {
@@ -119,9 +119,13 @@ class Newton {
       });
       K_.vmult(y, v);
     };
-    const KrylovOutcome outcome = gmres(multiply, precondition, dot_, r_, eta, 120, dx_);
-    answer.iterations += outcome.iterations;
-    return outcome.reduction < 0.2;
+    const auto solved = [&] {
+      dx_.sadd(0, 0, dx_);
+      const KrylovOutcome outcome = gmres(multiply, precondition, dot_, r_, eta, 120, dx_);
+      answer.iterations += outcome.iterations;
+      return outcome.reduction < 0.2;
+    };
+    return solved() || (K_.factorise(x_) && solved());
   }
 
   // x_ += dx_, halved until no cell is inverted; the first of a load step (`whole`) is not shortened: it has the

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "fem_reference/solvers/block_triangular.h"
+#include "fem_reference/solvers/coarsest_level.h"
 #include "fem_reference/solvers/tetrahedra.h"
 
 namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE {
@@ -55,7 +56,8 @@ class TetrahedraCycle {
 class TetrahedraOperator {
  public:
   explicit TetrahedraOperator(const ElasticSystem& system)
-      : mixed_(system.form == Form::mixed),
+      : system_(system),
+        mixed_(system.form == Form::mixed),
         mu_(system.mu),
         lambda_(system.lambda),
         pressure_(system.body.triangulation),
@@ -117,7 +119,7 @@ class TetrahedraOperator {
   }
 
   void precondition_displacement(Vector<double>& z, const Vector<double>& r) const {
-    multigrid_.vmult(z, r);
+    factors_ ? factors_(z, r) : multigrid_.vmult(z, r);
     clear_constrained(z);
   }
 
@@ -135,6 +137,11 @@ class TetrahedraOperator {
     y *= 1 / (1 / lambda_ + 0.5 / mu_);
   }
 
+  bool factorise(const MixedVector&) {
+    if (!factors_) factors_ = factored_stiffness(system_);
+    return std::exchange(may_factorise_, false) && factors_;
+  }
+
   CellPressures pressures(const MixedVector& x) const {
     CellPressures all;
     std::vector<dealii::types::global_dof_index> p(4);
@@ -150,13 +157,15 @@ class TetrahedraOperator {
   using Cells = Tetrahedra<double>;
   using Lane = Cells::Lane;
 
-  bool mixed_;
+  const ElasticSystem& system_;
+  bool mixed_, may_factorise_ = true;
   double mu_, lambda_;
   dealii::DoFHandler<3> pressure_;
   TetrahedraStiffness<double> stiffness_;
   TetrahedraCycle multigrid_;
   std::optional<Cells> cells_;
   Vector<double> inverse_mass_;
+  std::function<void(DofVector&, const DofVector&)> factors_;  // in place of the multigrid
 };
 
 }  // namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE

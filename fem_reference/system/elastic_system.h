@@ -44,6 +44,8 @@ using CellPressures = std::vector<std::array<double, 4>>;
 /// cost as much as a few solves by GAMG.  Thin and ragged bodies, for which GAMG performs worst, have the smallest
 /// factors.
 constexpr int most_factored_rows = 40000;
+/// The same of quadratic elements where the multigrid stalls.
+constexpr int most_factored_for_thin_bodies = 100000;
 
 struct ElasticSystem {
   const Body3& body;

@@ -202,6 +202,16 @@ MeshedBody mesh_body(const MeshRequest& request) {
   }
 }
 
+MeshedBody mesh_to_cut(MeshRequest request) {
+  request.coarser = {reference_ratios.begin(), reference_ratios.end()};
+  try {
+    return mesh_body(request);
+  } catch (const InputError&) {
+    request.coarser.clear();
+    return mesh_body(request);
+  }
+}
+
 Mesh mesh_geo(const fs::path& geo, const Vec3& size, const Cells& cells, MeshKind kind,
               const std::vector<std::string>& volumes) {
   require_file(geo, "a script for gmsh, NAME.geo");

@@ -4,6 +4,7 @@
 // $SPRINGPROOF_MESH_PROGRAM), so that a mesher that crashes, hangs or is under another licence stays outside.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -76,6 +77,16 @@ double size_ratio(const Mesh& coarse, const Mesh& fine);
 /// cells, no coarser meshes by least_ratio, a mesher that crashed or took too long.
 /// @throws std::runtime_error if the program cannot be run.
 MeshedBody mesh_body(const MeshRequest& request);
+
+/// Edges of the coarser meshes of a reference over those of the finest.
+inline constexpr std::array<double, 2> reference_ratios = {2.25, 1.5};
+
+/// The body that springs are cut from where no reference is wanted: still the finest of three meshes, so that it is the
+/// same in every command.  A body that has no such coarser meshes has one alone.
+/// @param request without `coarser`
+/// @return the mesh and the coarser ones
+/// @throws as mesh_body
+MeshedBody mesh_to_cut(MeshRequest request);
 
 /// Meshes a .geo with the parameters size_x size_y size_z [m], nx ny nz and tetrahedra (0 or 1); physical surfaces name
 /// the patches.  The grid is detected.  A process meshes the same but once, and keeps the mesh.  Thread-safe.

@@ -8,6 +8,9 @@
 
 namespace springproof {
 
+/// Edge of the cells over that of those in which they are measured.
+inline constexpr int measuring_ratio = 3;
+
 /// The fine cells of a body, and the coarse cell that each lies in.
 struct FineCells {
   CutBody body;                      ///< cut by the fine lattice

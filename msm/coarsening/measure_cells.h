@@ -34,6 +34,12 @@ struct MeasuredBody {
   double error_of_averaged = 0;  ///< the same of averaged springs in all cells
 };
 
+/// What is said of measured cells: how far they are off.
+/// @param measured cells
+/// @return a sentence
+/// @throws std::invalid_argument where averaged springs are as good
+std::string describe(const MeasuredBody& measured);
+
 /// Measures the cells of a body under loads all over it, each by a problem of the cells around it: cells near a support
 /// on the held body, the others on the free one.  Cells that two settings of the fit leave more than a factor of two
 /// apart, and those without enough fine cells, keep averaged springs.

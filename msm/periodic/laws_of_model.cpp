@@ -44,6 +44,11 @@ AveragedSprings averaged_law(const ModelParameters& p, const IsotropicMaterial& 
   return law;
 }
 
+AveragedSprings measuring_law(const ModelParameters& p, const IsotropicMaterial& material) {
+  constexpr double largest_ratio = 0.3;
+  return averaged_law(p, {1, std::min(material.poisson_ratio, largest_ratio), 1});
+}
+
 std::vector<ForceLaw> laws_of(const ModelParameters& parameters, const Network& network,
                               const IsotropicMaterial& material, const BulkCalibration& calibration,
                               const NodalVectors& volume_gradient, WeightStart start) {

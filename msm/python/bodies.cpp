@@ -81,7 +81,7 @@ fs::path find_body(const fs::path& file, const Vec3& size, double scale) {
 
 SolidBody cut_out(const MeshRequest& request, std::optional<double> edge, int cubes,
                   const std::vector<PatchRule>& patches) try {
-  MeshedBody meshed = mesh_body(request);
+  MeshedBody meshed = mesh_to_cut(request);
   SolidBody body;
   body.notes = std::move(meshed.notes);
   for (std::string& note : select_patches(patches, meshed.mesh)) body.notes.push_back(std::move(note));

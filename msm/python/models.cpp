@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <thread>
 
+#include "msm/coarsening/measure_cells.h"
 #include "msm/dynamics/time_step.h"
 #include "msm/measure/moduli.h"
 #include "msm/parameters/made_of.h"
 #include "msm/periodic/homogenise.h"
+#include "msm/periodic/laws_of_model.h"
 #include "msm/periodic/periodic_model.h"
 #include "msm/python/bindings.h"
 #include "msm/springs_of_model.h"
@@ -30,6 +33,23 @@ std::shared_ptr<BodyModel> finished(BodyModel model) {
   return std::make_shared<BodyModel>(std::move(model));
 }
 
+/// Cut cells measured in finer ones.
+/// @throws std::invalid_argument where averaged springs are as good
+EmbeddedModel build_measured(ModelParameters p, const SolidBody& body, const std::vector<std::string>& held,
+                             const IsotropicMaterial& material) {
+  p.coarsened = false;
+  EmbeddedModel built = build_cut(p, *body.cut, held, *body.mesh, material);
+  const AveragedSprings law = measuring_law(p, material);
+  const FineCells fine = fine_cells(*body.cut, *body.tetrahedra, measuring_ratio);
+  MeasureOptions options;
+  options.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  const MeasuredBody measured = measure_cells({*body.cut, fine, law, held}, options);
+  describe(measured);
+  erase_laws<AveragedSprings>(built.model);
+  built.model.laws.emplace_back(in_material(measured.cells, built.model.network.cells, law, averaged_law(p, material)));
+  return built;
+}
+
 std::shared_ptr<BodyModel> build(const std::string& name, const std::shared_ptr<SolidBody>& body,
                                  const IsotropicMaterial& material, const std::vector<std::string>& held,
                                  const std::vector<AttachedMass>& masses, const py::kwargs& options) {
@@ -38,12 +58,15 @@ std::shared_ptr<BodyModel> build(const std::string& name, const std::shared_ptr<
   made.parameters = parameters_of(name, options);
   made.body = body;
   const bool cut = made.parameters.cut.value_or(false);
+  if (made.parameters.coarsened.value_or(false) && !cut)
+    throw InputError(fmt::format("{}: coarsened: is for cut cells (allowed: with cut = True)", name));
   if (cut && !body->cut)
     throw InputError(fmt::format("{}: cut = True: the body is a block (allowed: a body by voxels())", name));
   if (!cut && !held.empty())
     throw InputError(fmt::format("{}: held: is for cut cells (allowed: with cut = True)", name));
   for (const std::string& on : held) patch(*body->tetrahedra, on);
   EmbeddedModel built = long_call([&] {
+    if (made.parameters.coarsened.value_or(false)) return build_measured(made.parameters, *body, held, material);
     return cut ? build_cut(made.parameters, *body->cut, held, *body->mesh, material)
                : build_embedded(made.parameters, *body->mesh, material, body->region.get());
   });
@@ -157,7 +180,8 @@ void bind_models(py::module_& m) {
   py::class_<BodyModel, std::shared_ptr<BodyModel>> model(m, "Model", R"(A mass-spring model of a body.
 
 name: a row of models(); options: those of a case file, as face_to_cube=1, seed=2, curve="neo_hooke"; cut=True: cells
-cut along the true surface, with `held`, the patches that supports will hold; masses: Mass(...) on the body.  Raises InputError for what does not suit
+cut along the true surface, with `held`, the patches that supports will hold; coarsened=True: these cells measured in
+finer ones; masses: Mass(...) on the body.  Raises InputError for what does not suit
 the model.)");
   model
       .def(py::init(&build), "name"_a, "body"_a, "material"_a, py::kw_only(), "held"_a = std::vector<std::string>(),

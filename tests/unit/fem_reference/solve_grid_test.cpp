@@ -158,6 +158,27 @@ TEST(FemSolveGrid, ASlenderGridOfOneLevelIsSolvedDirectly) {
   EXPECT_LE(solution.iterations, 3);  // the factors are of the matrix in single precision
 }
 
+// Linear elements lock in a strip of one layer of tetrahedra: a cycle with them below the quadratic ones does nothing
+// for its bending.
+TEST(FemSolveGrid, AStripOneTetrahedronThickIsSolvedAtSmallAndAtLargeStrain) {
+  const Vec3 strip(40, 10, 0.2);
+  for (const auto& [law, cells] : {std::pair<const char*, Cells>{"linear", {40, 10, 1}}, {"hencky", {12, 3, 1}}}) {
+    fem::GridProblem problem = test::fem_block(strip, cells, 0, 2, 0.45);
+    problem.coarse = test::tetrahedra_block(problem.coarse);
+    problem.law = law;
+    problem.tolerance = 1e-8;
+    const double pressure = 1e-5;  // the end moves by two thicknesses
+    problem.loads = {PrescribedDisplacement{"x_min", {0.0, 0.0, 0.0}}, Traction{"z_max", {0, 0, -pressure}}};
+    problem.points = NodalVectors(1, 3);
+    problem.points.row(0) << 39.9, 5, 0.1;
+    const fem::Solution solution = fem::solve_grid(problem);
+    ASSERT_TRUE(solution.ok) << law << ": " << solution.message;
+    const double beam = pressure * std::pow(strip[0], 4) / (8 * 1e4 / 12 * std::pow(strip[2], 3));
+    EXPECT_LT(-solution.displacement(0, 2), beam) << law;
+    EXPECT_GT(-solution.displacement(0, 2), beam * (1 - 0.45 * 0.45)) << law;  // as a plate that keeps its width
+  }
+}
+
 TEST(FemSolveGrid, RefusesWhatCannotBeSolved) {
   const std::optional<double> is_free;
   fem::GridProblem problem = test::fem_block(size, {2, 2, 2}, 0, 1, 0.3);

@@ -220,5 +220,11 @@ TEST(ExpectedSeconds, OfVoxelsGrowWithTheirNumberBeforeTheyAreMeshed) {
   EXPECT_GT(seconds("geo = \"beam.stl\"\nvoxel_edge_m = 0.1"), few);
 }
 
+TEST(ExpectedSeconds, OfAMotionAreFiniteThoughTheSizeOfTheBodyIsNotKnown) {
+  std::string text = case_text("geo = \"organ.stl\"\nvoxels = 1500", 0.3) + "[dynamics]\nduration_s = 1\n";
+  const Experiment e = parse_experiment("kinematics = \"hencky\"\n" + text, "case.toml");
+  EXPECT_TRUE(std::isfinite(unmeshed_seconds(e, e.materials[0])));
+}
+
 }  // namespace
 }  // namespace springproof::status_test
