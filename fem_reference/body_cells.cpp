@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "fem_reference/system/attached_mass.h"
+#include "fem_reference/system/materials.h"
 #include "fem_reference/system/sample.h"
 #include "problem/system/input_error.h"
 
@@ -18,34 +19,31 @@ using Eigen::VectorXd;
 
 namespace {
 
-CellLaw law_of(const GridProblem& problem, const Body3& body) {
+std::optional<Law> law_of(const GridProblem& problem) {
   const std::optional<Law> law = law_named(problem.law);
   if (!law && problem.law != "linear")
     throw InputError(fmt::format("unknown law \"{}\"; there are: linear, {}", problem.law, law_names()));
-  CellLaw cells{law, form_for({body.has_tetrahedra(), problem.degree}, problem.material.poisson_ratio, !law),
-                shear_modulus(problem.material), lame_lambda(problem.material)};
-  cells.pointwise = pointwise_part(body.has_tetrahedra(), cells);
-  return cells;
+  return law;
 }
 
 }  // namespace
 
 BodyCells::BodyCells(const GridProblem& problem, const Body3& body, const dealii::DoFHandler<3>& dof_handler,
                      const std::vector<Prescribed>& held)
-    : law_(law_of(problem, body)),
+    : laws_(laws_of(problem, law_of(problem), body.has_tetrahedra())),
       relaxation_(problem.motion ? problem.motion->relaxation : Relaxation{}),
-      form_(describe({body.has_tetrahedra(), problem.degree}, law_.form)),
+      form_(describe({body.has_tetrahedra(), problem.degree}, form_of(laws_))),
       number_(dof_handler.n_dofs(), 0),
       component_(dof_handler.n_dofs()) {
   for (const Prescribed& p : held) number_[p.dof] = -1;
   for (PetscInt& n : number_)
     if (n == 0) n = free_++;
 
-  const bool mixed = law_.form == Form::mixed;
+  const bool mixed = any_mixed(laws_);
   const auto scalar = scalar_element(body, problem.degree);
   const dealii::Quadrature<3> quadrature = cell_quadrature(body, problem.degree + 1);
   const Eigen::MatrixXd N = values_at(*scalar, quadrature);
-  dealii::DoFHandler<3> of_pressure(body.triangulation);
+  dealii::DoFHandler<3> of_pressure(body.of_pressures());
   Eigen::MatrixXd pressures(quadrature.size(), 0);
   if (mixed) {
     const auto fe = pressure_element(body, problem.degree);
@@ -61,13 +59,14 @@ BodyCells::BodyCells(const GridProblem& problem, const Body3& body, const dealii
   for (const auto& cell : dof_handler.active_cell_iterators()) {
     values.reinit(dealii::Triangulation<3>::cell_iterator(cell));
     Cell& c = cells_.emplace_back();
+    c.material = cell->material_id();
     c.shape = {Eigen::MatrixXd(3 * points, nodes), VectorXd(points), pressures};
     for (int q = 0; q < points; ++q) {
       c.shape.weights[q] = values.JxW(q);
       for (int a = 0; a < nodes; ++a)
         for (int i = 0; i < 3; ++i) c.shape.gradients(3 * q + i, a) = values.shape_grad(a, q)[i];
     }
-    c.mass = problem.material.density * N.transpose() * c.shape.weights.asDiagonal() * N;
+    c.mass = laws_[c.material].density * N.transpose() * c.shape.weights.asDiagonal() * N;
     if (const auto more = attached.find(cell->active_cell_index()); more != attached.end()) c.mass += more->second;
     c.overstrains.assign(points * relaxation_.branches.size(), Eigen::Matrix3d::Zero());
     cell->get_dof_indices(dofs);
@@ -78,7 +77,7 @@ BodyCells::BodyCells(const GridProblem& problem, const Body3& body, const dealii
       component_[dofs[i]] = int(component);
     }
     if (mixed) {
-      dealii::DoFHandler<3>::active_cell_iterator(&body.triangulation, cell->level(), cell->index(), &of_pressure)
+      dealii::DoFHandler<3>::active_cell_iterator(&body.of_pressures(), cell->level(), cell->index(), &of_pressure)
           ->get_dof_indices(pressure_dofs);
       c.p.assign(pressure_dofs.begin(), pressure_dofs.end());
     }
@@ -128,9 +127,10 @@ Vec3 BodyCells::angular_momentum(const VectorXd& position, const VectorXd& v) co
 }
 
 std::optional<double> BodyCells::energy(const Unknowns& x) const {
-  if (!law_.law || *law_.law == Law::log_cauchy) return {};
+  const std::optional<Law>& law = laws_.front().law;
+  if (!law || *law == Law::log_cauchy) return {};
   double sum = 0;
-  for (const Cell& cell : cells_) sum += cell_energy(law_, cell.shape, read(cell, x));
+  for (const Cell& cell : cells_) sum += cell_energy(laws_[cell.material], cell.shape, read(cell, x));
   return sum;
 }
 
@@ -141,13 +141,15 @@ double BodyCells::residual(const Unknowns& x, const Viscous& viscous, const Unkn
   const std::vector<RelaxingStep> branches = branches_over(viscous);
   for (const Cell& cell : cells_) {
     const CellVector at = read(cell, x);
-    CellVector f = before ? step_residual(law_, cell.shape, read(cell, *before), at, smallest)
-                          : cell_residual(law_, cell.shape, at, smallest, nullptr);
+    CellVector f = before ? step_residual(laws_[cell.material], cell.shape, read(cell, *before), at, smallest)
+                          : cell_residual(laws_[cell.material], cell.shape, at, smallest, nullptr);
     if (!(smallest > 0)) break;
     if (viscous.acts())
-      add_viscosity(law_, cell.shape, at.u, read(cell, rate).u, viscous.time, viscous.per_rate, f, nullptr);
+      add_viscosity(laws_[cell.material], cell.shape, at.u, read(cell, rate).u, viscous.time, viscous.per_rate, f,
+                    nullptr);
     if (!branches.empty())
-      add_relaxation(law_, cell.shape, read(cell, from).u, at.u, branches, cell.overstrains, f, nullptr);
+      add_relaxation(laws_[cell.material], cell.shape, read(cell, from).u, at.u, branches, cell.overstrains, f,
+                     nullptr);
     for (std::size_t i = 0; i < cell.u.size(); ++i) r.u[cell.u[i]] += f.u(i / 3, i % 3);
     for (std::size_t k = 0; k < cell.p.size(); ++k) r.p[cell.p[k]] += f.p[k];
   }
@@ -166,7 +168,8 @@ void BodyCells::relax(const Unknowns& x, const Viscous& viscous) {
   const Unknowns from{viscous.before, x.p};
   const std::vector<RelaxingStep> branches = branches_over(viscous);
   if (branches.empty()) return;
-  for (Cell& cell : cells_) advance(law_, cell.shape, read(cell, from).u, read(cell, x).u, branches, cell.overstrains);
+  for (Cell& cell : cells_)
+    advance(laws_[cell.material], cell.shape, read(cell, from).u, read(cell, x).u, branches, cell.overstrains);
 }
 
 void BodyCells::factor(const Unknowns& x, const Viscous& viscous, double inertia) {
@@ -176,9 +179,10 @@ void BodyCells::factor(const Unknowns& x, const Viscous& viscous, double inertia
   for (const Cell& cell : cells_) {
     double smallest = 1;
     const CellVector at = read(cell, x);
-    CellVector r = cell_residual(law_, cell.shape, at, smallest, &tangent);
-    if (viscous.acts()) add_viscosity(law_, cell.shape, at.u, 0 * at.u, viscous.time, viscous.per_rate, r, &tangent);
-    if (!branches.empty()) add_relaxation(law_, cell.shape, at.u, at.u, branches, cell.overstrains, r, &tangent);
+    const CellLaw& law = laws_[cell.material];
+    CellVector r = cell_residual(law, cell.shape, at, smallest, &tangent);
+    if (viscous.acts()) add_viscosity(law, cell.shape, at.u, 0 * at.u, viscous.time, viscous.per_rate, r, &tangent);
+    if (!branches.empty()) add_relaxation(law, cell.shape, at.u, at.u, branches, cell.overstrains, r, &tangent);
     CellMatrix uu = (tangent.uu + tangent.uu.transpose()) / 2;
     for (Eigen::Index a = 0; a < cell.mass.rows(); ++a)
       for (Eigen::Index b = 0; b < cell.mass.cols(); ++b)

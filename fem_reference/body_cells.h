@@ -63,6 +63,7 @@ class BodyCells {
 
  private:
   struct Cell {
+    unsigned int material;  ///< number in Mesh::materials
     CellShape shape;
     Eigen::MatrixXd mass;                  ///< of one component [kg]
     std::vector<Eigen::Index> u;           ///< 3 a + i: component i of node a
@@ -76,7 +77,7 @@ class BodyCells {
     return {viscous.acts() ? Eigen::VectorXd(viscous.per_rate * (x.u - viscous.before)) : x.u, x.p};
   }
 
-  CellLaw law_;
+  std::vector<CellLaw> laws_;  ///< by material
   Relaxation relaxation_;
   std::string form_;
   std::vector<Cell> cells_;

@@ -50,6 +50,7 @@ Solution solve_one(const Request& request, const Discretisation& grid, Method me
         graded(problem.coarse.nodes.colwise().minCoeff(), problem.coarse.nodes.colwise().maxCoeff(), grid.grading);
   problem.law = request.law;
   problem.material = request.material;
+  problem.regions = materials_of(request.regions);
   problem.loads = request.loads;
   problem.points = request.points;
   problem.stress_points = request.stress_points;

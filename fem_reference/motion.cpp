@@ -38,7 +38,7 @@ class MidpointRule {
         v_(x_.u),
         a_(x_.u),
         last_p_(x_.p) {
-    const DofVector load = load_vector(dof_handler, body, problem.loads, problem.material, problem.body_force);
+    const DofVector load = load_vector(dof_handler, body, problem);
     load_.resize(x_.u.size());
     for (Eigen::Index i = 0; i < load_.size(); ++i) load_[i] = load[i];
     if (motion_.released) check_held(held_, dof_handler.get_communicator());

@@ -16,6 +16,7 @@
 #include "fem_reference/solvers/petsc.h"
 #include "fem_reference/system/attached_mass.h"
 #include "fem_reference/system/boundary_conditions.h"
+#include "fem_reference/system/materials.h"
 #include "fem_reference/system/sample.h"
 #include "problem/system/input_error.h"
 #include "problem/system/progress.h"
@@ -89,7 +90,7 @@ CellMatrix mass_of(const Eigen::MatrixXd& m, Eigen::Index pressures) {
 
 /// `pressure_unit`: of the unknown pressures [Pa/m], for numbers as large as the displacements'.
 Pencil assemble_pencil(const GridProblem& problem, const Body3& body, const dealii::DoFHandler<3>& dof_handler,
-                       Form form, double pressure_unit) {
+                       const std::vector<CellLaw>& laws, double pressure_unit) {
   Pencil pencil;
   pencil.number.assign(dof_handler.n_dofs(), 0);
   for (const Prescribed& p : prescribed(dof_handler, body, problem.loads)) pencil.number[p.dof] = -1;
@@ -100,8 +101,8 @@ Pencil assemble_pencil(const GridProblem& problem, const Body3& body, const deal
   const dealii::Quadrature<3> quadrature = cell_quadrature(body, body.has_tetrahedra() ? 4 : problem.degree + 1);
   const int nodes = int(scalar->n_dofs_per_cell()), points = int(quadrature.size());
   CellShape shape{Eigen::MatrixXd(3 * points, nodes), Eigen::VectorXd(points), Eigen::MatrixXd(points, 0)};
-  dealii::DoFHandler<3> of_pressure(body.triangulation);
-  if (form == Form::mixed) {
+  dealii::DoFHandler<3> of_pressure(body.of_pressures());
+  if (any_mixed(laws)) {
     const auto fe = pressure_element(body, problem.degree);
     of_pressure.distribute_dofs(*fe);
     pencil.pressures = PetscInt(of_pressure.n_dofs());
@@ -123,16 +124,16 @@ Pencil assemble_pencil(const GridProblem& problem, const Body3& body, const deal
   dealii::FEValues<3> values(*body.mapping, *scalar, quadrature, dealii::update_gradients | dealii::update_JxW_values);
   const Eigen::MatrixXd N = values_at(*scalar, quadrature);
   const auto attached = attached_mass(problem.masses, body, *scalar);
-  const CellLaw law{std::nullopt, form, shear_modulus(problem.material), lame_lambda(problem.material)};
   for_each_cell(pencil, dof_handler, of_pressure, [&](const auto& cell, const std::vector<PetscInt>& rows) {
     values.reinit(cell);
+    const CellLaw& law = laws[cell->material_id()];
     for (int q = 0; q < points; ++q) {
       shape.weights[q] = values.JxW(q);
       for (int a = 0; a < nodes; ++a)
         for (int i = 0; i < 3; ++i) shape.gradients(3 * q + i, a) = values.shape_grad(a, q)[i];
     }
     const CellMatrix stiffness = stiffness_of(law, shape, pressure_unit);
-    Eigen::MatrixXd m = problem.material.density * N.transpose() * shape.weights.asDiagonal() * N;
+    Eigen::MatrixXd m = law.density * N.transpose() * shape.weights.asDiagonal() * N;
     if (const auto more = attached.find(cell->active_cell_index()); more != attached.end()) m += more->second;
     const CellMatrix mass = mass_of(m, shape.pressures.cols());
     pencil.K->add(rows, rows, stiffness.data());  // PETSc leaves out negative rows and columns
@@ -242,17 +243,17 @@ std::string missed(const Spectrum& s, const Pencil& pencil) {
 void solve_modes(const GridProblem& problem, const Body3& body, const dealii::DoFHandler<3>& dof_handler,
                  Solution& solution) {
   const Element element{body.has_tetrahedra(), problem.degree};
-  const Form form = form_for(element, problem.material.poisson_ratio, true);
+  const std::vector<CellLaw> laws = laws_of(problem, std::nullopt, body.has_tetrahedra());
   if (process_count() > 1) throw InputError("natural modes are computed by one process");
   start_mpi();
   progress::detail(fmt::format("{} unknowns, natural modes", dof_handler.n_dofs()));
   const auto [low, high] = dealii::GridTools::compute_bounding_box(body.triangulation).get_boundary_points();
   const Pencil pencil =
-      assemble_pencil(problem, body, dof_handler, form, shear_modulus(problem.material) / low.distance(high));
+      assemble_pencil(problem, body, dof_handler, laws, shear_modulus(problem.material) / low.distance(high));
   const double slowest = shear_modulus(problem.material) / problem.material.density / low.distance_square(high);
   Eigensolver solver;
   set_up(pencil, -0.01 * slowest, solver);
-  solution.form = fmt::format("{}, consistent mass, Krylov-Schur", describe(element, form));
+  solution.form = fmt::format("{}, consistent mass, Krylov-Schur", describe(element, form_of(laws)));
   solution.unknowns = pencil.unknowns();
   Spectrum spectrum;
   for (int beyond = modes_beyond; beyond <= most_beyond; beyond *= 2) {

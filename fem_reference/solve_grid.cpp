@@ -15,6 +15,7 @@
 #include "fem_reference/solvers/coarsest_level.h"
 #include "fem_reference/system/boundary_conditions.h"
 #include "fem_reference/system/elastic_system.h"
+#include "fem_reference/system/materials.h"
 #include "fem_reference/system/sample.h"
 #include "fem_reference/system/solution_file.h"
 #include "problem/system/input_error.h"
@@ -85,25 +86,26 @@ bool has_linear_coarse_space(const GridProblem& problem, const Body3& body) {
 
 bool matrix_free(const GridProblem& problem, const Body3& body) {
   const bool few_cells = body.triangulation.n_cells(0) <= largest_coarse_grid && !body.curved;
-  return problem.method == Method::automatic && !body.has_tetrahedra() &&
+  return problem.method == Method::automatic && !body.has_tetrahedra() && problem.regions.empty() &&
          (few_cells || has_linear_coarse_space(problem, body));
 }
 
 // Quadratic tetrahedra at small strain: a matrix-free level above linear ones.
 bool matrix_free_tetrahedra(const GridProblem& problem, const Body3& body) {
-  return body.has_tetrahedra() && problem.degree == 2 && problem.law == "linear" &&
+  return body.has_tetrahedra() && problem.degree == 2 && problem.law == "linear" && problem.regions.empty() &&
          problem.method == Method::automatic && process_count() == 1;
 }
 
 std::string element_name(const ElasticSystem& system) {
-  return describe({system.body.has_tetrahedra(), system.degree}, system.form);
+  return describe({system.body.has_tetrahedra(), system.degree}, system.form) +
+         (system.laws.empty() ? "" : fmt::format(", {} materials", system.laws.size()));
 }
 
 // The discrete problem on one grid, for any law: prescribed degrees of freedom, right-hand side, elastic system.
 struct Discrete {
   Discrete(const GridProblem& problem, const Body3& body, const dealii::DoFHandler<3>& dof_handler)
       : held(prescribed(dof_handler, body, problem.loads)),
-        load(load_vector(dof_handler, body, problem.loads, problem.material, problem.body_force)),
+        load(load_vector(dof_handler, body, problem)),
         system{
             body,
             dof_handler,
@@ -119,6 +121,10 @@ struct Discrete {
             problem.method == Method::automatic ? most_factored_rows : 0,
             {},
             {}} {
+    if (!problem.regions.empty()) {
+      system.laws = laws_of(problem, law_named(problem.law), body.has_tetrahedra());
+      system.form = form_of(system.laws);
+    }
     for (const Prescribed& p : held) system.constrained.push_back(p.dof);
     const dealii::IndexSet& owned = dof_handler.locally_owned_dofs();
     held.erase(std::remove_if(held.begin(), held.end(), [&](const auto& p) { return !owned.is_element(p.dof); }),
@@ -205,6 +211,7 @@ void solve_into(Solution& solution, const GridProblem& problem, const Body3& bod
   solution.stress = stress_at(problem.stress_points, discrete.system, law_named(problem.law), answer, u);
   if (!problem.vtu.empty() && solution.ok)
     write_solution(problem.vtu, at_own_nodes(discrete.system, law_named(problem.law), answer, u), problem.vtu_notes);
+  if (!problem.regions.empty()) solution.regions = measure_regions(discrete.system, answer, u);
   const VolumeMeasure volume = measure_volume(body, dof_handler, u);
   solution.volume_change = volume.change;
   solution.volume_change_first_order = volume.change_first_order;
@@ -219,6 +226,9 @@ Solution solve_grid(const GridProblem& problem) {
   if (problem.own_memory) memory.emplace();
   const double start = cpu_seconds();
   check(problem.material);
+  for (const IsotropicMaterial& m : problem.regions) check(m);
+  if (!problem.regions.empty() && process_count() > 1)
+    throw InputError("bodies of several materials are solved by one process");
   if (problem.degree != 1 && problem.degree != 2)
     throw InputError(fmt::format("elements of degree {}: only 1 and 2 are there", problem.degree));
   const auto body = triangulate(problem.coarse, problem.refinements, problem.place);

@@ -51,11 +51,10 @@ std::vector<std::array<int, n>> to_tuples(const json& j) {
 json to_json(const Mesh& mesh) {
   json patches = json::array();
   for (const Patch& p : mesh.patches) patches.push_back({{"name", p.name}, {"facets", tuples(p.facets)}});
-  json out = {{"nodes", points(mesh.nodes)},
-              {"hexahedra", tuples(mesh.hexahedra)},
-              {"tetrahedra", tuples(mesh.tetrahedra)},
-              {"patches", patches},
-              {"curved", points(mesh.curved)}};
+  json out = {
+      {"nodes", points(mesh.nodes)},           {"hexahedra", tuples(mesh.hexahedra)},
+      {"tetrahedra", tuples(mesh.tetrahedra)}, {"patches", patches},
+      {"curved", points(mesh.curved)},         {"materials", bytes(mesh.materials.data(), mesh.materials.size())}};
   if (mesh.grid)
     out["grid"] = {{"cells", mesh.grid->cells},
                    {"origin", mesh.grid->origin},
@@ -71,6 +70,7 @@ Mesh mesh_from_json(const json& j) {
   mesh.tetrahedra = to_tuples<4>(j.at("tetrahedra"));
   for (const json& p : j.at("patches")) mesh.patches.push_back({p.at("name"), to_tuples<4>(p.at("facets"))});
   mesh.curved = to_points(j.at("curved"));
+  mesh.materials = j.at("materials").get_binary();
   if (j.contains("grid")) {
     const json& g = j.at("grid");
     mesh.grid =

@@ -318,6 +318,7 @@ const IsotropicMaterial& material_of(const Experiment& experiment, std::optional
 
 int cross_check(const std::filesystem::path& file, const CrossCheckOptions& options) try {
   const Experiment experiment = read_experiment(file);
+  require_one_material(experiment, "cross-check");
   calculix::require_counterpart(experiment);
   if (experiment.body.is_voxels())
     throw InputError(experiment.body.where,

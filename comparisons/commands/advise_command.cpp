@@ -110,6 +110,7 @@ Forecast AdviseCommand::forecast() const {
   const std::vector<std::filesystem::path> found = find_cases({case_});
   if (found.size() > 1) throw InputError(fmt::format("{} is a folder of {} cases; name one", case_, found.size()));
   const Experiment e = read_experiment(found.front());
+  require_one_material(e, "advise");
   if (wish_.cells_across && e.body.is_voxels())
     throw InputError(
         "--cells-across: is for blocks (allowed: a case with size_m and cells; this body is cut out of a "

@@ -199,8 +199,9 @@ int FrequenciesCommand::run() const try {
   if (vtu_ && out_.empty()) throw InputError("--vtu: needs a folder (allowed: with --out DIR)");
   const std::vector<fs::path> found = find_cases({case_});
   if (found.size() > 1) throw InputError(fmt::format("{} is a folder of {} cases; name one", case_, found.size()));
-  const Experiment experiment =
-      with_materials(case_of_modes(read_experiment(found.front()), options_), poisson_ratios_);
+  const Experiment whole = read_experiment(found.front());
+  require_one_material(whole, "frequencies");
+  const Experiment experiment = with_materials(case_of_modes(whole, options_), poisson_ratios_);
   end_at_interrupts();
   Status status;
   bool all = true;

@@ -60,7 +60,11 @@ double median(std::vector<double> values) {
 
 }  // namespace
 
-std::string without_component(const std::string& measure) { return measure.substr(0, measure.rfind('.')); }
+std::string without_component(const std::string& measure) {
+  const std::string of_region = quantity_of_region(measure);
+  if (!of_region.empty() && measure.ends_with(of_region)) return measure;  // a number
+  return measure.substr(0, measure.rfind('.'));
+}
 
 double weighted_norm(const NodalVectors& u, const Eigen::VectorXd& weights) {
   return std::sqrt(weighted_product(u, u, weights));
@@ -115,6 +119,8 @@ ReferenceValue extrapolate_two(double f1, double f2) {
 }
 
 std::string kind_of(const std::string& measure) {
+  if (const std::string of_region = quantity_of_region(measure); !of_region.empty())
+    return of_region == "pressure" ? "mean_stress" : of_region == "displacement" ? "mean_displacement" : of_region;
   return measure.starts_with("volume_change") ? "volume_change" : measure.substr(0, measure.find('.'));
 }
 

@@ -10,6 +10,7 @@
 #include "comparisons/judge/wrinkles.h"
 #include "comparisons/models/external.h"
 #include "comparisons/models/frequencies.h"
+#include "comparisons/models/region_means.h"
 #include "comparisons/prepare/sampling.h"
 #include "comparisons/prepare/voxel_body.h"
 #include "comparisons/reference/reference_grids.h"
@@ -162,6 +163,7 @@ ModelSample measured(const PreparedCase& prepared, const Lattice& lattice, const
                          : at_measured_points(prepared, lattice, sample.field.displacement));
   if (cut && averaged_springs_of(built.model) && asked(e, "promised_error") && !in_motion)
     sample.scalars["promised_error"] = cell_energies(built.model, sample.state.displacement).promised_error();
+  if (cut && asked(e, "region")) sample.scalars.merge(region_means(network, e.regions, sample.state.displacement));
   if (asked(e, "network")) add_network(network, sample.scalars);
   if (asked(e, "line")) {
     sample.line = sample_line(*e.line, *kelvin_of(e), built.model, sample.state.displacement);

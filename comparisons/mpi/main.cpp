@@ -97,6 +97,7 @@ ReadyCase make_ready(const std::filesystem::path& file, const MpiOptions& option
   ReadyCase ready;
   agree(PETSC_COMM_WORLD, [&] {
     const Experiment e = only(options.suite.poisson_ratios, read_experiment(file));
+    require_one_material(e, "springproof-mpi");
     ready.numbers = models_at_rest(e, options.models);
     ready.prepared = prepare(e);
     if (!is_first()) return;

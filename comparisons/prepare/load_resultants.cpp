@@ -74,8 +74,26 @@ Vec3 centroid(const Mesh& mesh) {
   return mesh.nodes.transpose() * volumes / volumes.sum();
 }
 
+/// The weight of tetrahedra of several densities, about their centre of mass.
+Wrench weight_of_regions(const PreparedCase& prepared, const Vec3& acceleration) {
+  const Mesh& body = *prepared.body.tetrahedra.back();
+  const Eigen::VectorXd volumes = cell_volumes(body, body.nodes);
+  double mass = 0;
+  Vec3 moment = Vec3::Zero();
+  for (std::size_t c = 0; c < body.tetrahedra.size(); ++c) {
+    const std::uint8_t material = body.materials[c];
+    const Experiment& e = prepared.experiment;
+    const double own = volumes[static_cast<Eigen::Index>(c)] *
+                       (material == 0 ? e.materials.front() : e.regions[material - 1].material).density;
+    mass += own;
+    for (const int n : body.tetrahedra[c]) moment += own / 4 * body.nodes.row(n).transpose();
+  }
+  return {mass * acceleration, Vec3::Zero(), moment / mass};
+}
+
 /// The weight's resultant, of the body within the file's facets where there are such.
 Wrench weight(const PreparedCase& prepared, const Vec3& acceleration) {
+  if (!prepared.body.tetrahedra.back()->materials.empty()) return weight_of_regions(prepared, acceleration);
   const double density = prepared.experiment.materials.front().density;
   if (prepared.body.facets)
     return {density * volume(*prepared.body.facets) * acceleration, Vec3::Zero(), centroid(*prepared.body.facets)};

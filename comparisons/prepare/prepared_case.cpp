@@ -75,7 +75,8 @@ EmbeddedModel built_on(const PreparedCase& prepared, const Lattice& lattice, con
   if (passes_patch_test(parameters.row) && lattice.tetrahedra)
     return build_on_tetrahedra(lattice, parameters, material);
   if (!parameters.cut.value_or(false)) return build_embedded(parameters, *lattice.mesh, material, lattice.region.get());
-  return build_cut_on(lattice, parameters, {held.begin(), held.end()}, material);
+  return build_cut_on(lattice, parameters, {held.begin(), held.end()}, material,
+                      materials_of(prepared.experiment.regions));
 }
 
 }  // namespace
@@ -89,10 +90,11 @@ const Network& FittedNetworks::of(const ModelParameters& parameters, const Mesh&
 }
 
 EmbeddedModel build_cut_on(const Lattice& lattice, const ModelParameters& parameters,
-                           const std::vector<std::string>& held, const IsotropicMaterial& material) {
+                           const std::vector<std::string>& held, const IsotropicMaterial& material,
+                           const std::vector<IsotropicMaterial>& regions) {
   ModelParameters averaged = parameters;
   averaged.coarsened = false;
-  EmbeddedModel built = build_cut(averaged, *lattice.cut, held, *lattice.mesh, material);
+  EmbeddedModel built = build_cut(averaged, *lattice.cut, held, *lattice.mesh, material, regions);
   if (!parameters.coarsened.value_or(false)) return built;
   erase_laws<AveragedSprings>(built.model);
   built.model.laws.emplace_back(lattice.measured->law(parameters, material));

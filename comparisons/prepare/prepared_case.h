@@ -105,8 +105,10 @@ EmbeddedModel build_on(const PreparedCase& prepared, const Lattice& lattice, con
 
 /// Builds a model of the cut cells of a lattice, measured ones if ModelParameters::coarsened says so.
 /// @param held names of the patches that anchors hold
+/// @param regions materials of the body's regions
 EmbeddedModel build_cut_on(const Lattice& lattice, const ModelParameters& parameters,
-                           const std::vector<std::string>& held, const IsotropicMaterial& material);
+                           const std::vector<std::string>& held, const IsotropicMaterial& material,
+                           const std::vector<IsotropicMaterial>& regions = {});
 
 /// Adds the next lattice.
 void add_lattice(Lattice lattice, PreparedCase& prepared);

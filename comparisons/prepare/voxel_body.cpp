@@ -17,6 +17,7 @@
 #include "meshes/mesher/mesher_exchange.h"
 #include "meshes/patches/refined_rims.h"
 #include "meshes/patches/select_patches.h"
+#include "meshes/regions/mark_regions.h"
 #include "meshes/volume.h"
 #include "meshes/voxels/voxelise.h"
 #include "problem/case_file/measures.h"
@@ -36,6 +37,7 @@ MeshRequest body_request(const PreparedCase& prepared) {
   request.file = prepared.body.geo;
   request.size = prepared.experiment.body.size;
   request.scale = prepared.experiment.body.scale;
+  request.volumes = volumes_of(prepared.experiment.regions);
   return request;
 }
 
@@ -114,7 +116,9 @@ void mesh_the_body(MeshRequest request, PreparedCase& prepared, std::string& hin
   for (const Mesh& mesh : body.coarser) prepared.body.uncut.push_back(static_cast<int>(mesh.tetrahedra.size()));
   for (std::size_t m = 0; m < body.coarser.size(); ++m) {
     Mesh& mesh = body.coarser[m];
-    std::vector<std::string> notes = select_patches(e.patches, mesh, coarseness(mesh, prepared));
+    const double coarser = coarseness(mesh, prepared);
+    std::vector<std::string> notes = mark_regions(e.regions, coarser, mesh);
+    for (std::string& note : select_patches(e.patches, mesh, coarser)) notes.push_back(std::move(note));
     for (std::string& note : refine_rims(prepared, prepared.body.uncut[m], mesh)) notes.push_back(std::move(note));
     if (m + 1 == body.coarser.size()) prepared.body.notes.insert(prepared.body.notes.end(), notes.begin(), notes.end());
     prepared.body.tetrahedra.push_back(std::make_shared<Mesh>(std::move(mesh)));
@@ -164,7 +168,9 @@ void mesh_like_lattices(MeshRequest request, PreparedCase& prepared) {
   for (Lattice& lattice : prepared.lattices) {
     request.edge = lattice.voxel_edge;
     Mesh mesh = mesh_body(request).mesh;
-    select_patches(e.patches, mesh, coarseness(mesh, prepared));
+    const double coarser = coarseness(mesh, prepared);
+    mark_regions(e.regions, coarser, mesh);
+    select_patches(e.patches, mesh, coarser);
     lattice.tetrahedra = std::make_shared<Mesh>(std::move(mesh));
   }
 }

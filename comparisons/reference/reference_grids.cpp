@@ -105,7 +105,8 @@ double scale_of(const std::string& measure, const std::map<std::string, double>&
     if (name.starts_with("torque.")) force = std::max(force, std::abs(value) / body.size);
     if (name.starts_with("stress.")) stress = std::max(stress, std::abs(value));
   }
-  return kind == "stress" ? stress : force * (kind == "torque" ? body.size : 1);
+  if (kind == "energy") return force * body.displacement;
+  return kind == "stress" || kind == "mean_stress" ? stress : force * (kind == "torque" ? body.size : 1);
 }
 
 std::vector<ReferenceRecord> exact_records(const PreparedCase& prepared, double nu, const ElementGrids& e) {
@@ -157,8 +158,10 @@ Cells divided(const Cells& cells, int divisor) {
 
 int fewest_across(const Experiment& e) {
   constexpr double pressures_above = 0.4;  // Poisson's ratio; of quadratic elements
-  const bool any = std::any_of(e.materials.begin(), e.materials.end(),
-                               [](const IsotropicMaterial& m) { return m.poisson_ratio > pressures_above; });
+  const auto has_pressures = [](const IsotropicMaterial& m) { return m.poisson_ratio > pressures_above; };
+  const std::vector<IsotropicMaterial> regions = materials_of(e.regions);
+  const bool any = std::any_of(e.materials.begin(), e.materials.end(), has_pressures) ||
+                   std::any_of(regions.begin(), regions.end(), has_pressures);
   return any ? two_on_the_coarsest : two_on_the_coarsest / 2;
 }
 
@@ -236,7 +239,25 @@ std::map<std::string, double> measures_of(const PreparedCase& prepared, const fe
       field_measures(prepared, sampled_field(prepared.lattices.front(), s), at_measured(prepared, s.displacement));
   if (const Eigen::Index measured = first_pictured_stress(prepared); measured > 0 && s.stress.rows() >= measured)
     values.merge(stress_measures(probes, s.stress.topRows(measured)));
+  values.merge(region_measures(prepared.experiment.regions, s.regions));
   return values;
+}
+
+std::map<std::string, double> region_measures(const std::vector<MaterialRegion>& regions,
+                                              const std::vector<fem::RegionMeans>& means) {
+  constexpr const char* components[6] = {"xx", "yy", "zz", "xy", "yz", "xz"};
+  std::map<std::string, double> out;
+  for (std::size_t r = 0; r < std::min(regions.size(), means.size()); ++r) {
+    const std::string region = "region." + regions[r].name + ".";
+    const fem::RegionMeans& m = means[r];
+    out[region + "volume_change"] = m.volume_change;
+    out[region + "energy"] = m.energy;
+    out[region + "pressure"] = -m.stress.leftCols<3>().mean();
+    for (int c = 0; c < 6; ++c) out[region + "mean_stress." + components[c]] = m.stress(0, c);
+    for (int d = 0; d < 3; ++d) out[region + "displacement." + "xyz"[d]] = m.displacement[d];
+    out[region + "displacement.magnitude"] = m.displacement.norm();
+  }
+  return out;
 }
 
 bool comparable(const PreparedCase& prepared, const std::string& measure) {

@@ -67,6 +67,10 @@ Field sampled_field(const Lattice& lattice, const fem::Solution& s);
 /// Every scalar measure of one solution, stresses among them.
 std::map<std::string, double> measures_of(const PreparedCase& prepared, const fem::Solution& s);
 
+/// region.<region>.<quantity>, of the means over each region.
+std::map<std::string, double> region_measures(const std::vector<MaterialRegion>& regions,
+                                              const std::vector<fem::RegionMeans>& means);
+
 /// The measures of a field that have a value of their own; `u` is the displacement at the measured points.
 std::map<std::string, double> field_measures(const PreparedCase& prepared, const Field& field, const NodalVectors& u);
 

@@ -20,6 +20,7 @@
 #include "meshes/locate/locate.h"
 #include "meshes/mesher/mesher.h"
 #include "meshes/patches/select_patches.h"
+#include "meshes/regions/mark_regions.h"
 #include "meshes/volume.h"
 #include "msm/models.h"
 #include "msm/statics/equilibrium.h"
@@ -175,12 +176,16 @@ void check_fineness(const Body& body, const Cells& c) {
                     c[0], c[1], c[2], total, largest_lattice));
 }
 
-/// @throws InputError at a [[patch]] whose border is no line of one of the reference's grids.
-void check_patches_of_reference(const PreparedCase& prepared) {
+/// Notes the regions.
+/// @throws InputError at a [[patch]] or [[region]] whose border is no line of one of the reference's grids.
+void check_grids_of_reference(PreparedCase& prepared) {
   const Experiment& e = prepared.experiment;
-  if (e.patches.empty() || (e.reference.elements.empty() && !e.reference.in_time)) return;
+  if ((e.patches.empty() && e.regions.empty()) || (e.reference.elements.empty() && !e.reference.in_time)) return;
   for (const int divisor : {4, 2, 1}) {
-    Mesh mesh = mesh_geo(prepared.body.geo, e.body.size, divided(prepared.reference_cells, divisor));
+    Mesh mesh =
+        mesh_geo(prepared.body.geo, e.body.size, divided(prepared.reference_cells, divisor), {}, volumes_of(e.regions));
+    const std::vector<std::string> notes = mark_regions(e.regions, 1, mesh);
+    if (divisor == 1) prepared.body.notes.insert(prepared.body.notes.end(), notes.begin(), notes.end());
     select_whole_facets(e.patches, mesh);
   }
 }
@@ -190,12 +195,13 @@ void prepare_blocks(PreparedCase& prepared) {
   prepared.reference_cells = reference_cells(e);
   for (const Cells& cells : e.body.cells) check_fineness(e.body, cells);
   for (const Cells& cells : e.body.cells) {
-    MeshedBody body = mesh_body({.file = prepared.body.geo, .size = e.body.size, .cells = cells});
+    MeshedBody body =
+        mesh_body({.file = prepared.body.geo, .size = e.body.size, .cells = cells, .volumes = volumes_of(e.regions)});
     if (prepared.lattices.empty()) prepared.body.notes = std::move(body.notes);
     select_whole_facets(e.patches, body.mesh);
     add_lattice({cells, std::make_shared<Mesh>(std::move(body.mesh))}, prepared);
   }
-  check_patches_of_reference(prepared);
+  check_grids_of_reference(prepared);
 }
 
 /// Samples the patches of the body itself, if their mean displacement is measured.
@@ -239,6 +245,22 @@ void check_masses(const Experiment& e, const Mesh& mesh) {
                          fmt::format("mass '{}': at_m: the point ({:.6g}, {:.6g}, {:.6g}) m lies outside the body "
                                      "(allowed: a point of the body, of {:.6g} x {:.6g} x {:.6g} m)",
                                      mass.name, X[0], X[1], X[2], e.body.size[0], e.body.size[1], e.body.size[2]));
+}
+
+/// @throws InputError at a model that is of one material, in a case of several.
+void check_region_models(const PreparedCase& prepared) {
+  const Experiment& e = prepared.experiment;
+  if (e.regions.empty()) return;
+  for (std::size_t m = 0; m < prepared.models.size(); ++m) {
+    const ModelParameters& p = prepared.models[m];
+    const bool can = *p.cut && !*p.coarsened && !p.springs && p.has(Extension::averaging) && e.body.accuracies.empty();
+    if (is_external(e.models[m]) || can) continue;
+    throw InputError(
+        e.models[m].where,
+        fmt::format("compare.models: {} is of one material in a body (allowed beside [[region]]: hybmss_avg in "
+                    "cut cells of one size; or models = [])",
+                    e.models[m].label));
+  }
 }
 
 /// Checks patches, loads, models and measures of the case on one lattice.
@@ -318,6 +340,7 @@ PreparedCase prepare_lattices(const Experiment& experiment) {
     check_fracture_models(experiment, prepared.models);
     choose_cut_cells(prepared);
     choose_measured_cells(prepared);
+    check_region_models(prepared);
     check_vertex_options(prepared);
     prepared.body.geo = find_geo(experiment.body, experiment.file);
     progress::phase("cutting the body");

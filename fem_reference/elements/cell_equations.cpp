@@ -163,6 +163,10 @@ double pointwise_part(bool tetrahedra, const CellLaw& law) {
   return tetrahedra && law.law && law.form == Form::mixed ? over_mu * law.mu : 0;
 }
 
+bool any_mixed(const std::vector<CellLaw>& laws) {
+  return std::any_of(laws.begin(), laws.end(), [](const CellLaw& law) { return law.form == Form::mixed; });
+}
+
 CellVector cell_residual(const CellLaw& law, const CellShape& shape, const CellVector& x, double& smallest,
                          CellTangent* tangent) {
   const int n = shape.nodes(), points = shape.points(), np = int(shape.pressures.cols());
@@ -170,6 +174,12 @@ CellVector cell_residual(const CellLaw& law, const CellShape& shape, const CellV
   const PointStates state = states(law, shape, x);
   smallest = std::min(smallest, state.smallest);
   if (!(state.smallest > 0)) return r;
+  const bool idle = np > 0 && law.form != Form::mixed;  // pressures that are 0, of cells beside mixed ones
+  CellMatrix compress;
+  if (idle) {
+    compress = -1 / law.mu * shape.pressures.transpose() * shape.weights.asDiagonal() * shape.pressures;
+    r.p = compress * x.p;
+  }
 
   Eigen::MatrixXd B, DB, QB, GB;
   if (tangent) {
@@ -200,6 +210,11 @@ CellVector cell_residual(const CellLaw& law, const CellShape& shape, const CellV
   if (!tangent) return r;
 
   tangent->uu = B.transpose() * DB;
+  if (idle) {
+    tangent->up = CellMatrix::Zero(3 * n, np);
+    tangent->pu = CellMatrix::Zero(np, 3 * n);
+    tangent->pp = compress;
+  }
   if (law.law) add_stress_stiffness(shape, stresses, tangent->uu);
   const auto weights = shape.weights.asDiagonal();
   switch (law.form) {

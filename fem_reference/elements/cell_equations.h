@@ -39,7 +39,11 @@ struct CellLaw {
   Form form;
   double mu, lambda;     ///< [Pa]
   double pointwise = 0;  ///< part of lambda that the mixed form leaves to the dilatation at each point, at rest [Pa]
+  double density = 0;    ///< [kg/m^3]
 };
+
+/// Whether one of them is mixed: then all have pressures, which are 0 in the cells that are not.
+bool any_mixed(const std::vector<CellLaw>& laws);
 
 /// CellLaw::pointwise of a body.  Continuous pressures of tetrahedra leave the dilatation at single points free: at the
 /// rim of a support det F falls to a twentieth, and laws lose their ellipticity there.  At large strain they stand for

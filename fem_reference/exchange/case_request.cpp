@@ -14,6 +14,7 @@ Request request_of(const Experiment& experiment, const IsotropicMaterial& materi
   request.size = experiment.body.size;
   request.law = experiment.kinematics;
   request.material = experiment.at_rest(material);
+  request.regions = experiment.regions;
   request.loads = experiment.loads;
   request.masses = experiment.masses;
   request.tolerance = 1e-8;

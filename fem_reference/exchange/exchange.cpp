@@ -32,7 +32,8 @@ namespace fem {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Discretisation, cells, element, grading, mesh, refinements, steps, vtu)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MotionRequest, duration, damping, course, released, velocity, spin, viscosity,
                                    relaxation, energy_momentum)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Solution, grid, ok, message, form, law, displacement, stress, reactions,
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RegionMeans, volume_change, displacement, stress, energy)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Solution, grid, ok, message, form, law, displacement, stress, reactions, regions,
                                    volume_change, volume_change_first_order, min_jacobian, degrees_of_freedom, unknowns,
                                    cells, cells_per_process, iterations, residual, seconds, times, memory_MiB,
                                    frequencies, shapes, rigid_motions, time, path, kinetic_energy, elastic_energy,
@@ -41,21 +42,14 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Solution, grid, ok, message, form, law, displ
 nlohmann::json to_json(const Request& r) {
   nlohmann::json meshes = nlohmann::json::array();
   for (const auto& mesh : r.meshes) meshes.push_back(to_json(*mesh));
-  return {{"name", r.name},
-          {"geo", r.geo.string()},
-          {"size", r.size},
-          {"law", r.law},
-          {"material", r.material},
-          {"loads", r.loads},
-          {"grids", r.grids},
-          {"points", r.points},
-          {"stress_points", r.stress_points},
-          {"tolerance", r.tolerance},
-          {"meshes", meshes},
-          {"cost", r.cost},
-          {"vtu_single", r.vtu_single},
-          {"modes", r.modes},
-          {"motion", r.motion},
+  return {{"name", r.name},           {"geo", r.geo.string()},
+          {"size", r.size},           {"law", r.law},
+          {"material", r.material},   {"regions", materials_of(r.regions)},
+          {"loads", r.loads},         {"grids", r.grids},
+          {"points", r.points},       {"stress_points", r.stress_points},
+          {"tolerance", r.tolerance}, {"meshes", meshes},
+          {"cost", r.cost},           {"vtu_single", r.vtu_single},
+          {"modes", r.modes},         {"motion", r.motion},
           {"masses", r.masses}};
 }
 
@@ -66,6 +60,8 @@ Request request_from_json(const nlohmann::json& j) {
   j.at("size").get_to(r.size);
   j.at("law").get_to(r.law);
   j.at("material").get_to(r.material);
+  for (const IsotropicMaterial& m : j.at("regions").get<std::vector<IsotropicMaterial>>())
+    r.regions.push_back({{}, m, {}});
   j.at("loads").get_to(r.loads);
   j.at("grids").get_to(r.grids);
   j.at("points").get_to(r.points);

@@ -4,6 +4,7 @@
 
 #include "meshes/mesher/mesher.h"
 #include "meshes/patches/select_patches.h"
+#include "meshes/regions/mark_regions.h"
 
 namespace springproof::fem {
 namespace {
@@ -24,17 +25,21 @@ std::vector<Cells> halved(Cells cells) {
 Mesh hexahedra_for(const Request& request, Discretisation& grid) {
   const std::vector<Cells> levels = halved(grid.cells);
   for (std::size_t level = 0; level < levels.size(); ++level) {
-    Mesh mesh = mesh_geo(request.geo, request.size, levels[level]);
-    if (!mesh.grid) return mesh_geo(request.geo, request.size, grid.cells, {.second_order = true});
+    const std::vector<std::string> volumes = volumes_of(request.regions);
+    Mesh mesh = mesh_geo(request.geo, request.size, levels[level], {}, volumes);
+    if (!mesh.grid) return mesh_geo(request.geo, request.size, grid.cells, {.second_order = true}, volumes);
     grid.refinements = static_cast<int>(levels.size() - level) - 1;
-    if (grid.refinements == 0 || end_at_edges_of(mesh, request.patches)) return mesh;
+    if (grid.refinements == 0 || (end_at_edges_of(mesh, request.patches) && end_at_faces_of(mesh, request.regions)))
+      return mesh;
   }
   return {};
 }
 
 Mesh mesh_for(const Request& request, Discretisation& grid) {
-  Mesh mesh = grid.element.starts_with('p') ? mesh_geo(request.geo, request.size, grid.cells, {.tetrahedra = true})
-                                            : hexahedra_for(request, grid);
+  Mesh mesh = grid.element.starts_with('p')
+                  ? mesh_geo(request.geo, request.size, grid.cells, {.tetrahedra = true}, volumes_of(request.regions))
+                  : hexahedra_for(request, grid);
+  mark_regions(request.regions, 1, mesh);
   select_whole_facets(request.patches, mesh);
   return mesh;
 }

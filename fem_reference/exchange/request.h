@@ -13,6 +13,7 @@
 #include "problem/loads.h"
 #include "problem/material.h"
 #include "problem/patch_rule.h"
+#include "problem/region.h"
 #include "problem/relaxation.h"
 #include "problem/system/run_cost.h"
 
@@ -53,6 +54,7 @@ struct Request {
   std::vector<PatchRule> patches = {};  ///< added to it by mesh_grids(), which the program is not told of
   std::string law = "linear";           ///< or a law of finite strain (fem_reference/elements/laws.h)
   IsotropicMaterial material;
+  std::vector<MaterialRegion> regions = {};  ///< of Mesh::materials from 1 on; the program is told of their materials
   std::vector<Load> loads;
   std::vector<Discretisation> grids;
   NodalVectors points;  ///< rest positions at which the displacement is requested, n x 3 [m]; for a given mesh also
@@ -68,6 +70,14 @@ struct Request {
       {};  ///< that modes and motions have beside the body's own; their weight is in `loads`
 };
 
+/// Means over a region, and its energy, at small strain.
+struct RegionMeans {
+  double volume_change = 0;                ///< of det F - 1 [1]
+  Vec3 displacement = Vec3::Zero();        ///< [m]
+  Stresses stress = Stresses::Zero(1, 6);  ///< [Pa]
+  double energy = 0;                       ///< in all [J]
+};
+
 /// The result on one grid.
 struct Solution {
   Discretisation grid;
@@ -78,25 +88,26 @@ struct Solution {
   NodalVectors displacement;  ///< at Request::points [m]
   Stresses stress;            ///< Cauchy stress at Request::stress_points
   std::vector<PatchReaction> reactions;
-  double volume_change = 0;              ///< exact, by the element's own quadrature [1]
-  double volume_change_first_order = 0;  ///< integral of div u / V [1]
-  double min_jacobian = 1;               ///< min det F at quadrature points
-  long degrees_of_freedom = 0;           ///< of the displacement, including constrained ones
-  long unknowns = 0;                     ///< unconstrained degrees of freedom
-  long cells = 0;                        ///< of the finest mesh
-  long cells_per_process = 0;            ///< of them in the memory of the largest process, with ghost cells
-  int iterations = 0;                    ///< of the linear solver, all steps together
-  double residual = 0;                   ///< relative, of the final state
-  double seconds = 0;                    ///< CPU time of this grid, of all processes
-  RunTimes times;                        ///< the part of it spent on the displacement; the rest is post-processing
-  std::vector<double> frequencies;       ///< of Request::modes and some more, ascending, without rigid motions [Hz]
-  std::vector<NodalVectors> shapes;      ///< of these modes, at Request::points [kg^-1/2]
-  int rigid_motions = 0;                 ///< that the supports leave
-  std::vector<double> time;              ///< of Request::motion: 0 and the end of every step [s]
-  std::vector<NodalVectors> path;        ///< displacements at Request::points at these times [m]
-  std::vector<double> kinetic_energy;    ///< at these times [J]
-  std::vector<double> elastic_energy;    ///< [J]; of laws at finite strain that have one, else empty
-  std::vector<Vec3> angular_momentum;    ///< about the origin [kg m^2/s]
+  std::vector<RegionMeans> regions = {};  ///< of Request::regions
+  double volume_change = 0;               ///< exact, by the element's own quadrature [1]
+  double volume_change_first_order = 0;   ///< integral of div u / V [1]
+  double min_jacobian = 1;                ///< min det F at quadrature points
+  long degrees_of_freedom = 0;            ///< of the displacement, including constrained ones
+  long unknowns = 0;                      ///< unconstrained degrees of freedom
+  long cells = 0;                         ///< of the finest mesh
+  long cells_per_process = 0;             ///< of them in the memory of the largest process, with ghost cells
+  int iterations = 0;                     ///< of the linear solver, all steps together
+  double residual = 0;                    ///< relative, of the final state
+  double seconds = 0;                     ///< CPU time of this grid, of all processes
+  RunTimes times;                         ///< the part of it spent on the displacement; the rest is post-processing
+  std::vector<double> frequencies;        ///< of Request::modes and some more, ascending, without rigid motions [Hz]
+  std::vector<NodalVectors> shapes;       ///< of these modes, at Request::points [kg^-1/2]
+  int rigid_motions = 0;                  ///< that the supports leave
+  std::vector<double> time;               ///< of Request::motion: 0 and the end of every step [s]
+  std::vector<NodalVectors> path;         ///< displacements at Request::points at these times [m]
+  std::vector<double> kinetic_energy;     ///< at these times [J]
+  std::vector<double> elastic_energy;     ///< [J]; of laws at finite strain that have one, else empty
+  std::vector<Vec3> angular_momentum;     ///< about the origin [kg m^2/s]
   double memory_MiB = 0;  ///< peak resident set so far, of the largest process; for an experiment with `cost` the
                           ///< growth due to this grid
 };

@@ -22,6 +22,12 @@ struct GridProblem {
   int degree = 2;                          ///< 1 or 2
   std::string law = "linear";
   IsotropicMaterial material;
+  std::vector<IsotropicMaterial> regions = {};  ///< of Mesh::materials from 1 on
+
+  /// Of cells of this number in Mesh::materials.
+  const IsotropicMaterial& material_of(unsigned int number) const {
+    return number == 0 ? material : regions.at(number - 1);
+  }
   std::vector<Load> loads;
   std::vector<AttachedMass> masses;             ///< beside the body's own, in motions and modes
   std::function<Vec3(const Vec3&)> body_force;  ///< [N/m^3], besides gravity; empty: none

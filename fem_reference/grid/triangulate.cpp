@@ -64,8 +64,10 @@ Patches mark_patches(const Mesh& mesh, const dealii::Triangulation<3>& triangula
 std::vector<dealii::CellData<3>> hexahedra(const Mesh& mesh, const Points& vertices) {
   constexpr std::array<int, 8> gmsh_corner = {0, 1, 3, 2, 4, 5, 7, 6};  // deal.II counts corners x fastest
   std::vector<dealii::CellData<3>> cells;
-  for (const Hexahedron& hexahedron : mesh.hexahedra) {
+  for (std::size_t c = 0; c < mesh.hexahedra.size(); ++c) {
+    const Hexahedron& hexahedron = mesh.hexahedra[c];
     dealii::CellData<3> cell;
+    cell.material_id = mesh.materials.empty() ? 0 : mesh.materials[c];
     for (int v = 0; v < 8; ++v) cell.vertices[v] = hexahedron[gmsh_corner[v]];
     cells.push_back(cell);
   }
@@ -77,11 +79,13 @@ std::vector<dealii::CellData<3>> hexahedra(const Mesh& mesh, const Points& verti
 
 std::vector<dealii::CellData<3>> tetrahedra(const Mesh& mesh) {
   std::vector<dealii::CellData<3>> cells;
-  for (const Tetrahedron& tetrahedron : mesh.tetrahedra) {
+  for (std::size_t c = 0; c < mesh.tetrahedra.size(); ++c) {
+    const Tetrahedron& tetrahedron = mesh.tetrahedra[c];
     Eigen::Matrix<double, 4, 3> x;
     for (int v = 0; v < 4; ++v) x.row(v) = mesh.nodes.row(tetrahedron[v]);
     if (!(tetrahedron_volume(x) > 0)) throw InputError("the mesh has inverted cells");
     dealii::CellData<3> cell(4);
+    cell.material_id = mesh.materials.empty() ? 0 : mesh.materials[c];
     for (int v = 0; v < 4; ++v) cell.vertices[v] = tetrahedron[v];
     cells.push_back(cell);
   }
@@ -170,6 +174,23 @@ std::unique_ptr<Body3> in_parts(const Mesh& mesh, const CellList& list) {
   return body;
 }
 
+// The same cells in the same order, but the vertices of each material are its own.
+std::unique_ptr<dealii::Triangulation<3>> materials_apart(const CellList& list) {
+  CellList own;
+  std::map<std::pair<dealii::types::material_id, unsigned int>, unsigned int> numbers;
+  for (dealii::CellData<3> cell : list.cells) {
+    for (unsigned int& v : cell.vertices) {
+      const auto [at, is_new] = numbers.try_emplace({cell.material_id, v}, unsigned(own.vertices.size()));
+      if (is_new) own.vertices.push_back(list.vertices[v]);
+      v = at->second;
+    }
+    own.cells.push_back(cell);
+  }
+  auto cells = std::make_unique<dealii::Triangulation<3>>();
+  cells->create_triangulation(own.vertices, own.cells, dealii::SubCellData());
+  return cells;
+}
+
 // p4est partitions the cells of a refined block.
 std::unique_ptr<dealii::Triangulation<3>> no_cells() {
   constexpr auto smoothing = dealii::Triangulation<3>::limit_level_difference_at_vertices;
@@ -205,6 +226,7 @@ std::unique_ptr<Body3> triangulate(const Mesh& mesh, int refinements, const std:
   body->patches = mark_patches(mesh, body->triangulation);
   if (!mesh.tetrahedra.empty()) {
     body->mapping = linear_tetrahedra();
+    if (!mesh.materials.empty()) body->apart = materials_apart(list);
   } else if (mesh.curved.size() > 0) {
     body->curved = true;
     body->mapping = curved_mapping(body->triangulation, [&](unsigned int c) { return curved_points(mesh, list, c); });

@@ -26,6 +26,13 @@ struct Body3 {
   bool curved = false;  ///< edges are those of Mesh::curved; else straight
   std::map<std::string, std::set<dealii::types::boundary_id>> patches;  ///< a facet may belong to several patches
 
+  /// Of tetrahedra of several materials: the same cells, those of each material with vertices of their own, so that
+  /// continuous pressures jump where materials meet; else empty.
+  std::unique_ptr<dealii::Triangulation<3>> apart = {};
+
+  /// What pressures are unknowns on.
+  dealii::Triangulation<3>& of_pressures() const { return apart ? *apart : triangulation; }
+
   bool has_tetrahedra() const { return triangulation.get_reference_cells().front().is_simplex(); }
 };
 

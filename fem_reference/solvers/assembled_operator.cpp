@@ -46,12 +46,25 @@ void AssembledOperator::assemble_stiffness(const DofVector* deformed_by) {
       most_factored_);
 }
 
+namespace {
+
+/// By how much the Schur complement of the pressures exceeds their mass matrix [1/Pa].
+double compliance(const CellLaw& law) {
+  if (law.form != Form::mixed) return 1 / law.mu;
+  return 1 / (law.lambda - law.pointwise) + 1 / (2 * law.mu + law.pointwise);
+}
+
+}  // namespace
+
+// That of the body's own material is left to precondition_pressure().
 void AssembledOperator::assemble_mass() {
   mass_ = empty_matrix(spaces_->p, spaces_->p, spaces_->comm);
   inverse_mass_ = vector().p;
+  const double own = compliance(system_.law_of(0, law_));
   spaces_->for_each_cell([&] {
     const CellShape& shape = spaces_->shape;
-    const CellMatrix M = shape.pressures.transpose() * shape.weights.asDiagonal() * shape.pressures;
+    CellMatrix M = shape.pressures.transpose() * shape.weights.asDiagonal() * shape.pressures;
+    if (!system_.laws.empty()) M *= compliance(spaces_->law) / own;
     mass_->add(spaces_->p_indices, spaces_->p_indices, M.data());
     for (std::size_t f = 0; f < spaces_->p_indices.size(); ++f) inverse_mass_(spaces_->p_indices[f]) += M(f, f);
   });
@@ -148,7 +161,7 @@ void AssembledOperator::precondition_pressure(DofVector& y, const DofVector& x) 
     y = x;
     y.scale(inverse_mass_);
   }
-  y *= 1 / (1 / (system_.lambda - system_.pointwise) + 1 / (2 * system_.mu + system_.pointwise));
+  y *= 1 / compliance(system_.law_of(0, law_));
 }
 
 void AssembledOperator::prepare(const MixedVector& x) {

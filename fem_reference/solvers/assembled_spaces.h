@@ -50,10 +50,11 @@ inline std::unique_ptr<SparseMatrix> empty_matrix(const dealii::DoFHandler<3>& r
 struct AssembledOperator::Spaces {
   Spaces(const ElasticSystem& system, std::optional<Law> wanted_law, const dealii::DoFHandler<3>& displacement,
          const std::vector<unsigned int>& constrained)
-      : law{wanted_law, system.form, system.mu, system.lambda, system.pointwise},
+      : system_(system),
+        law(system.law_of(0, wanted_law)),
         comm(system.body.triangulation.get_communicator()),
         u(displacement),
-        p(system.body.triangulation),
+        p(system.body.of_pressures()),
         scalar(scalar_element(system.body, int(u.get_fe().degree))),
         quadrature(cell_quadrature(system.body, u.get_fe().degree + 1)),
         values(*system.body.mapping, *scalar, quadrature, dealii::update_gradients | dealii::update_JxW_values),
@@ -66,7 +67,7 @@ struct AssembledOperator::Spaces {
       const auto [component, node] = u.get_fe().system_to_component_index(i);
       place.push_back(3 * int(node) + int(component));
     }
-    if (law.form != Form::mixed || &u != &system.dof_handler) return;
+    if (system.form != Form::mixed || &u != &system.dof_handler) return;
     const auto fe = pressure_element(system.body, system.degree);
     p.distribute_dofs(*fe);
     p_dofs.emplace(p);
@@ -76,7 +77,7 @@ struct AssembledOperator::Spaces {
 
   bool mixed() const { return p_dofs.has_value(); }
 
-  // Calls visit() on every locally owned cell, with shape, u_indices and p_indices set.
+  // Calls visit() on every locally owned cell, with law, shape, u_indices and p_indices set.
   template <typename Visit>
   void for_each_cell(const Visit& visit) {
     std::vector<dealii::types::global_dof_index> dofs(u_indices.size()), pressure_dofs(p_indices.size());
@@ -91,6 +92,7 @@ struct AssembledOperator::Spaces {
         std::copy(pressure_dofs.begin(), pressure_dofs.end(), p_indices.begin());
       }
       const dealii::Triangulation<3>::cell_iterator here = cell;
+      law = system_.law_of(cell->material_id(), law.law);
       values.reinit(here);
       const int n = int(scalar->n_dofs_per_cell()), points = int(quadrature.size());
       shape.gradients.resize(3 * points, n);
@@ -158,7 +160,8 @@ struct AssembledOperator::Spaces {
     matrix.add(p_indices, u_indices, B.data());
   }
 
-  CellLaw law;
+  const ElasticSystem& system_;
+  CellLaw law;  // of the cell being visited
   MPI_Comm comm;
   const dealii::DoFHandler<3>& u;
   dealii::DoFHandler<3> p;

@@ -269,8 +269,7 @@ void check_held(const std::vector<Prescribed>& prescribed, MPI_Comm comm) {
                                turns ? "turn about" : "move along", along[0], along[1], along[2], help));
 }
 
-DofVector load_vector(const dealii::DoFHandler<3>& dof_handler, const Body3& body, const std::vector<Load>& loads,
-                      const IsotropicMaterial& material, const std::function<Vec3(const Vec3&)>& body_force) {
+DofVector load_vector(const dealii::DoFHandler<3>& dof_handler, const Body3& body, const GridProblem& problem) {
   DofVector load = zero_vector(dof_handler);
   const unsigned int points = dof_handler.get_fe().degree + 1;
   const MPI_Comm comm = dof_handler.get_communicator();
@@ -289,7 +288,7 @@ DofVector load_vector(const dealii::DoFHandler<3>& dof_handler, const Body3& bod
         over_body(std::min(points + 2, 4u)),
         [&](const auto& values, unsigned int q) { return f(vec(values.quadrature_point(q))); }, load);
   };
-  for (const Load& l : loads) {
+  for (const Load& l : problem.loads) {
     if (const auto* traction = std::get_if<Traction>(&l))
       add(
           over_patch(traction->on), [&](const auto&, unsigned int) { return traction->traction; }, traction->wrench);
@@ -307,15 +306,18 @@ DofVector load_vector(const dealii::DoFHandler<3>& dof_handler, const Body3& bod
           over_patch(total->on), [&](const auto&, unsigned int) { return traction; }, total->wrench);
     }
     if (const auto* gravity = std::get_if<Gravity>(&l)) {
-      const Vec3 weight = material.density * gravity->acceleration;
       add(
-          over_body(points), [&](const auto&, unsigned int) { return weight; }, gravity->wrench);
+          over_body(points),
+          [&](const auto& values, unsigned int) -> Vec3 {
+            return problem.material_of(values.get_cell()->material_id()).density * gravity->acceleration;
+          },
+          gravity->wrench);
     }
     if (const auto* field = std::get_if<FieldBodyForce>(&l))
-      add_field([&](const Vec3& X) { return exact_body_force(field->field, X, material); });
+      add_field([&](const Vec3& X) { return exact_body_force(field->field, X, problem.material); });
     if (const auto* point = std::get_if<PointForce>(&l)) add_point_force(dof_handler, body, *point, load);
   }
-  if (body_force) add_field(body_force);
+  if (problem.body_force) add_field(problem.body_force);
   load.compress(dealii::VectorOperation::add);
   return load;
 }

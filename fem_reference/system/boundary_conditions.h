@@ -7,6 +7,7 @@
 #include <set>
 #include <vector>
 
+#include "fem_reference/grid/grid_problem.h"
 #include "fem_reference/grid/triangulate.h"
 #include "fem_reference/system/elastic_system.h"
 #include "meshes/field.h"
@@ -42,8 +43,7 @@ std::vector<dealii::IndexSet> prescribed_on_levels(const dealii::DoFHandler<3>& 
 void check_held(const std::vector<Prescribed>& prescribed, MPI_Comm comm);
 
 /// Right-hand side [N]: tractions, pressures, patch forces, gravity, point forces and body forces.
-DofVector load_vector(const dealii::DoFHandler<3>& dof_handler, const Body3& body, const std::vector<Load>& loads,
-                      const IsotropicMaterial& material, const std::function<Vec3(const Vec3&)>& body_force);
+DofVector load_vector(const dealii::DoFHandler<3>& dof_handler, const Body3& body, const GridProblem& problem);
 
 /// One per patch with prescribed displacement, in the order of the loads; `imbalance` is internal force -
 /// load [N].  Patches that prescribe one degree of freedom share its force by the integrals of its shape function,

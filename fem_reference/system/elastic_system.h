@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "fem_reference/elements/cell_equations.h"
 #include "fem_reference/elements/element.h"
 #include "fem_reference/elements/laws.h"
 #include "fem_reference/grid/triangulate.h"
@@ -59,9 +60,15 @@ struct ElasticSystem {
   bool plain_gamg;    ///< assembled matrices: no level of linear elements
   int most_factored;  ///< assembled matrices: largest number of rows for which linear elements are factored
   std::function<void(LevelVector& x, const LevelVector& r)> below =
-      {};                       ///< coarse-grid correction of the coarsest level; empty: none
-  std::string below_name = {};  ///< its method, for the report
-  double pointwise = 0;         ///< CellLaw::pointwise [Pa]
+      {};                          ///< coarse-grid correction of the coarsest level; empty: none
+  std::string below_name = {};     ///< its method, for the report
+  double pointwise = 0;            ///< CellLaw::pointwise [Pa]
+  std::vector<CellLaw> laws = {};  ///< of cells by their material_id, of a body of several materials; else empty
+
+  /// Of the cells of this material_id.
+  CellLaw law_of(unsigned int material, std::optional<Law> law) const {
+    return laws.empty() ? CellLaw{law, form, mu, lambda, pointwise} : laws.at(material);
+  }
 };
 
 struct ElasticAnswer {

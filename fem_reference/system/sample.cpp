@@ -33,10 +33,9 @@ NodalVectors displacement_at(const std::vector<Location>& places, const dealii::
 namespace {
 
 // The pressure at one point: from the pressure unknowns if there are any, else from the dilatation.
-double pressure_at(const ElasticSystem& system, std::optional<Law> law, const CellPressures& pressures,
-                   const Location& place, double dilatation) {
-  const double lambda = pressures.empty() ? system.lambda : system.pointwise;
-  const double of_dilatation = law ? pressure(*law, lambda, dilatation).value : lambda * dilatation;
+double pressure_at(const CellLaw& law, const CellPressures& pressures, const Location& place, double dilatation) {
+  const double lambda = law.form == Form::mixed ? law.pointwise : law.lambda;
+  const double of_dilatation = law.law ? pressure(*law.law, lambda, dilatation).value : lambda * dilatation;
   if (pressures.empty()) return of_dilatation;
   const auto& c = pressures[place.cell->active_cell_index()];
   return c[0] + c[1] * place.unit[0] + c[2] * place.unit[1] + c[3] * place.unit[2] + of_dilatation;
@@ -100,15 +99,16 @@ class CellStress {
     values_.reinit(dealii::DoFHandler<3>::active_cell_iterator(&system_.body.triangulation, cell->level(),
                                                                cell->index(), &system_.dof_handler));
     values_[dealii::FEValuesExtractors::Vector(0)].get_function_gradients(displacement_, gradients_);
+    const CellLaw law = system_.law_of(cell->material_id(), law_);
     for (std::size_t k = 0; k < points_.size(); ++k) {
       const Location here{cell, points_[k]};
       if (law_) {
         const Matrix3 F = deformation_gradient(gradients_[k]);
-        const double p = pressure_at(system_, law_, answer_.pressure, here, dilatation(*law_, F));
-        stresses_[k] = cauchy_stress(*law_, F, system_.mu, p);
+        const double p = pressure_at(law, answer_.pressure, here, dilatation(*law_, F));
+        stresses_[k] = cauchy_stress(*law_, F, law.mu, p);
       } else {
-        const double p = pressure_at(system_, law_, answer_.pressure, here, dealii::trace(gradients_[k]));
-        stresses_[k] = linear_stress(gradients_[k], system_.mu, p);
+        const double p = pressure_at(law, answer_.pressure, here, dealii::trace(gradients_[k]));
+        stresses_[k] = linear_stress(gradients_[k], law.mu, p);
       }
     }
     return stresses_;
@@ -139,6 +139,12 @@ Eigen::Matrix3d weighted(const std::vector<double>& weights, const std::vector<E
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (std::size_t k = 0; k < weights.size(); ++k) sum += weights[k] * stresses[k];
   return sum;
+}
+
+/// det(I + h) - 1 by its invariants, without cancellation.
+double det_minus_1(const dealii::Tensor<2, 3>& h) {
+  const double trace = dealii::trace(h);
+  return trace + (trace * trace - dealii::trace(h * h)) / 2 + dealii::determinant(h);
 }
 
 Eigen::Matrix<double, 1, 6> components(const Eigen::Matrix3d& s) {
@@ -191,6 +197,7 @@ NodalSolution at_own_nodes(const ElasticSystem& system, std::optional<Law> law, 
     cell->get_dof_indices(dofs);
     const std::vector<Eigen::Matrix3d>& in_cell = stress.at_points(cell);
     std::vector<int>& own = out.cells.emplace_back();
+    if (!system.laws.empty()) out.materials.push_back(cell->material_id());
     for (unsigned int a = 0; a < units.size(); ++a) {
       const auto [at, is_new] =
           number.try_emplace(dofs[fe.component_to_system_index(0, a)], static_cast<int>(number.size()));
@@ -210,6 +217,45 @@ NodalSolution at_own_nodes(const ElasticSystem& system, std::optional<Law> law, 
   return out;
 }
 
+std::vector<RegionMeans> measure_regions(const ElasticSystem& system, const ElasticAnswer& answer,
+                                         const DofVector& displacement) {
+  std::vector<RegionMeans> regions(system.laws.size() - 1);
+  std::vector<double> volume(regions.size(), 0);
+  dealii::FEValues<3> values(*system.body.mapping, system.dof_handler.get_fe(),
+                             cell_quadrature(system.body, system.degree + 1),
+                             dealii::update_values | dealii::update_gradients | dealii::update_JxW_values);
+  const dealii::FEValuesExtractors::Vector vector(0);
+  std::vector<dealii::Tensor<2, 3>> gradients(values.n_quadrature_points);
+  std::vector<dealii::Tensor<1, 3>> u(values.n_quadrature_points);
+  for (const auto& cell : system.dof_handler.active_cell_iterators()) {
+    if (cell->material_id() == 0) continue;
+    const CellLaw& law = system.laws[cell->material_id()];
+    RegionMeans& region = regions[cell->material_id() - 1];
+    values.reinit(cell);
+    values[vector].get_function_gradients(displacement, gradients);
+    values[vector].get_function_values(displacement, u);
+    for (const unsigned int q : values.quadrature_point_indices()) {
+      const dealii::Tensor<2, 3>& h = gradients[q];
+      const double w = values.JxW(q), trace = dealii::trace(h);
+      const double p = pressure_at(law, answer.pressure, {cell, values.get_quadrature().point(q)}, trace);
+      const Eigen::Matrix3d stress = linear_stress(h, law.mu, p);
+      volume[cell->material_id() - 1] += w;
+      region.volume_change += w * det_minus_1(h);
+      region.stress += w * components(stress);
+      for (int i = 0; i < 3; ++i) {
+        region.displacement[i] += w * u[q][i];
+        for (int j = 0; j < 3; ++j) region.energy += w / 2 * stress(i, j) * h[i][j];
+      }
+    }
+  }
+  for (std::size_t r = 0; r < regions.size(); ++r) {
+    regions[r].volume_change /= volume[r];
+    regions[r].displacement /= volume[r];
+    regions[r].stress /= volume[r];
+  }
+  return regions;
+}
+
 VolumeMeasure measure_volume(const Body3& body, const dealii::DoFHandler<3>& dof_handler,
                              const DofVector& displacement) {
   const auto& fe = dof_handler.get_fe();
@@ -225,13 +271,11 @@ VolumeMeasure measure_volume(const Body3& body, const dealii::DoFHandler<3>& dof
     values[vector].get_function_gradients(displacement, gradients);
     for (const unsigned int q : values.quadrature_point_indices()) {
       const dealii::Tensor<2, 3> h = gradients[q];
-      const double trace_h = dealii::trace(h);
-      // det(I + h) - 1 by its invariants, without cancellation
-      const double det_minus_1 = trace_h + (trace_h * trace_h - dealii::trace(h * h)) / 2 + dealii::determinant(h);
+      const double change = det_minus_1(h);
       volume += values.JxW(q);
-      measure.change += values.JxW(q) * det_minus_1;
-      measure.change_first_order += values.JxW(q) * trace_h;
-      measure.min_jacobian = std::min(measure.min_jacobian, 1 + det_minus_1);
+      measure.change += values.JxW(q) * change;
+      measure.change_first_order += values.JxW(q) * dealii::trace(h);
+      measure.min_jacobian = std::min(measure.min_jacobian, 1 + change);
     }
   }
   const MPI_Comm comm = dof_handler.get_communicator();

@@ -26,11 +26,16 @@ struct NodalSolution {
   NodalVectors X, displacement;         ///< rest positions and displacements [m], n x 3
   Stresses stress;                      ///< as stress_at() gives them [Pa], n x 6
   std::vector<std::vector<int>> cells;  ///< nodes of each cell, in the order of the element's shape functions
+  std::vector<double> materials = {};   ///< of each cell its number in Mesh::materials; empty: one
 };
 
 /// @throws InputError on several processes.
 NodalSolution at_own_nodes(const ElasticSystem& system, std::optional<Law> law, const ElasticAnswer& answer,
                            const DofVector& displacement);
+
+/// Means over the cells of each material but the body's own, at small strain.
+std::vector<RegionMeans> measure_regions(const ElasticSystem& system, const ElasticAnswer& answer,
+                                         const DofVector& displacement);
 
 struct VolumeMeasure {
   double change = 0;              ///< integral of det(I + grad u) - 1, divided by V

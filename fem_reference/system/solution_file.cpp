@@ -58,6 +58,7 @@ void write_solution(const std::string& file, const NodalSolution& solution, cons
   for (Eigen::Index n = 0; n < solution.stress.rows(); ++n) mises.values.push_back(von_mises(solution.stress.row(n)));
   vtu.point_data = {array_of("displacement", solution.displacement), array_of("stress", solution.stress),
                     std::move(mises)};
+  if (!solution.materials.empty()) vtu.cell_data = {{"material", 1, solution.materials}};
   write_file(file, text_of(vtu));
 }
 

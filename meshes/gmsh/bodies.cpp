@@ -65,7 +65,7 @@ Mesh mesh_structured(const MeshRequest& r, const GmshSession& session, std::vect
     session.stop_on_error(r.file);
   }
   const int type = r.kind.tetrahedra ? tetrahedron : r.kind.second_order ? hexahedron_27 : hexahedron;
-  const auto blocks = volume_elements(r.file, notes);
+  const auto blocks = volume_elements(r.file, r.volumes, notes);
   return read_mesh(r.file, only_block(r.file, blocks, type, r.kind.tetrahedra ? "tetrahedra" : "hexahedra"), notes);
 }
 
@@ -101,11 +101,12 @@ void want_edge(double edge) {
   gmsh::option::setNumber("Mesh.MeshSizeMax", edge);
 }
 
-Mesh fill_with_tetrahedra(const fs::path& file, const GmshSession& session, std::vector<std::string>& notes) {
+Mesh fill_with_tetrahedra(const MeshRequest& r, const GmshSession& session, std::vector<std::string>& notes) {
+  const fs::path& file = r.file;
   generate(file, session);
   const auto read = [&] {
     notes.clear();
-    const auto blocks = volume_elements(file, notes);
+    const auto blocks = volume_elements(file, r.volumes, notes);
     return read_mesh(file, only_block(file, blocks, tetrahedron, "tetrahedra"), notes);
   };
   const Mesh mesh = read();
@@ -242,7 +243,7 @@ MeshAt model_at(const MeshRequest& r, const GmshSession& session, double drawn) 
   return [&r, &session, drawn](double edge, double) {
     draw_with(edge, drawn);
     OneMesh made{{}, {}, edge};
-    made.mesh = fill_with_tetrahedra(r.file, session, made.notes);
+    made.mesh = fill_with_tetrahedra(r, session, made.notes);
     return made;
   };
 }
@@ -279,7 +280,7 @@ MeshAt script_at(const MeshRequest& r) {
     GmshSession session(parameters_of(own));
     open_script(own, session);
     OneMesh made{{}, {}, edge};
-    made.mesh = fill_with_tetrahedra(r.file, session, made.notes);
+    made.mesh = fill_with_tetrahedra(r, session, made.notes);
     return made;
   };
 }
@@ -337,6 +338,33 @@ MeshedBody mesh_script(const MeshRequest& request) {
   return of_solid(mesh_refined(r, script_at(r)), volume);
 }
 
+namespace {
+
+/// Gives solids that touch the faces between them in common, and makes each a physical volume of its number in the file
+/// and its label there.
+void name_solids(const gmsh::vectorpair& solids) {
+  std::vector<std::string> labels;
+  for (const auto& [dimension, tag] : solids) {
+    std::string label;
+    gmsh::model::getEntityName(dimension, tag, label);
+    labels.push_back(label.substr(label.rfind('/') + 1));
+  }
+  gmsh::vectorpair all;
+  std::vector<gmsh::vectorpair> pieces = {solids};
+  if (solids.size() > 1) {
+    gmsh::model::occ::fragment({solids.front()}, {solids.begin() + 1, solids.end()}, all, pieces);
+    gmsh::model::occ::synchronize();
+  }
+  for (std::size_t i = 0; i < solids.size(); ++i) {
+    std::vector<int> tags;
+    for (const auto& [dimension, tag] : pieces[i]) tags.push_back(tag);
+    const int number = gmsh::model::addPhysicalGroup(3, tags, static_cast<int>(i + 1));
+    if (!labels[i].empty()) gmsh::model::setPhysicalName(3, number, labels[i]);
+  }
+}
+
+}  // namespace
+
 MeshedBody mesh_solid(const MeshRequest& request) {
   MeshRequest r = request;
   GmshSession session({});
@@ -348,6 +376,11 @@ MeshedBody mesh_solid(const MeshRequest& request) {
   gmsh::vectorpair volumes, surfaces;
   gmsh::model::getEntities(volumes, 3);
   if (volumes.empty()) refuse(r.file, "no solid in it (allowed: one solid; make one of its surfaces in a CAD program)");
+  if (has_volumes(r)) {
+    name_solids(volumes);
+    session.stop_on_error(r.file);
+    gmsh::model::getEntities(volumes, 3);
+  }
   const double volume = model_volume();
   if (r.edge == 0) r.edge = r.scale * edge_for(r.tetrahedra, volume);
   refuse_too_many(r, volume * std::pow(r.scale, 3));

@@ -1,6 +1,8 @@
 // Each kind of file as a meshed body.  A gmsh session of its own each; not thread-safe.
 #pragma once
 
+#include <algorithm>
+
 #include "meshes/gmsh/session.h"
 #include "meshes/mesher/mesher.h"
 #include "meshes/surface/surface.h"
@@ -34,14 +36,18 @@ Surface vertices_of_msh(const MeshRequest& request);
 MeshedBody fill_surface(const MeshRequest& request, const Surface& raw);
 
 /// Meshes the model's volumes with tetrahedra and reads them, with the notes of read_mesh().
-Mesh fill_with_tetrahedra(const std::filesystem::path& file, const GmshSession& session,
-                          std::vector<std::string>& notes);
+Mesh fill_with_tetrahedra(const MeshRequest& request, const GmshSession& session, std::vector<std::string>& notes);
 
 /// Edge with which a body of this volume has about so many tetrahedra.
 double edge_for(int tetrahedra, double volume);
 
 /// Tells gmsh to make edges of this length, in the file's units.
 void want_edge(double edge);
+
+/// Whether a region of the body is a physical volume of its file.
+inline bool has_volumes(const MeshRequest& request) {
+  return std::any_of(request.volumes.begin(), request.volumes.end(), [](const std::string& v) { return !v.empty(); });
+}
 
 /// @throws InputError when a body of this volume [m^3] would have too many cells.
 void refuse_too_many(const MeshRequest& request, double volume);

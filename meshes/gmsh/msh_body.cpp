@@ -2,15 +2,17 @@
 #include <gmsh.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <optional>
-#include <set>
 
 #include "meshes/gmsh/bodies.h"
 #include "meshes/gmsh/read_mesh.h"
 #include "meshes/gmsh/split_cells.h"
+#include "meshes/halved.h"
 #include "meshes/patches/transfer_patches.h"
+#include "meshes/volume.h"
 #include "problem/processes/child.h"
 
 namespace springproof {
@@ -23,20 +25,39 @@ std::string counts(const std::vector<ElementBlock>& blocks) {
   return words;
 }
 
-/// All cells by their corners, each once (a file lists a cell once for each physical volume it is in).
-ElementBlock corners_of(const std::vector<ElementBlock>& blocks) {
-  ElementBlock all = blocks[0];
-  all.nodes = all.corners;
-  all.order = 1;
-  all.node_tags.clear();
-  std::set<std::vector<std::size_t>> seen;
-  for (const ElementBlock& b : blocks)
-    for (std::size_t i = 0; i < b.node_tags.size(); i += b.nodes) {
-      std::vector<std::size_t> cell(b.node_tags.begin() + i, b.node_tags.begin() + i + b.corners);
-      all.node_tags.insert(all.node_tags.end(), cell.begin(), cell.end());
+/// All cells by their corners, each once (a file lists a cell once for each physical volume it is in), in the region
+/// that one of its physical volumes is.
+/// @throws InputError at a cell in two regions
+std::vector<ElementBlock> once(const std::filesystem::path& file, const std::vector<ElementBlock>& blocks) {
+  std::vector<ElementBlock> all;
+  std::map<std::vector<std::size_t>, std::pair<std::size_t, std::size_t>> seen;  // corners, block and number in it
+  for (const ElementBlock& b : blocks) {
+    ElementBlock& own = all.emplace_back(ElementBlock{b.type, b.name, 1, b.corners, b.corners, {}, {}});
+    for (std::size_t i = 0; i < b.count(); ++i) {
+      const auto first = b.node_tags.begin() + static_cast<std::ptrdiff_t>(i * b.nodes);
+      std::vector<std::size_t> cell(first, first + static_cast<std::ptrdiff_t>(b.corners));
       std::sort(cell.begin(), cell.end());
-      if (!seen.insert(std::move(cell)).second) all.node_tags.resize(all.node_tags.size() - b.corners);
+      const auto [at, is_new] = seen.try_emplace(std::move(cell), all.size() - 1, own.count());
+      if (is_new) own.node_tags.insert(own.node_tags.end(), first, first + static_cast<std::ptrdiff_t>(b.corners));
+      if (b.materials.empty()) continue;
+      if (is_new) own.materials.push_back(b.materials[i]);
+      std::uint8_t& there = all[at->second.first].materials[at->second.second];
+      if (there > 0 && b.materials[i] > 0 && there != b.materials[i])
+        refuse(file, "cells are in the physical volumes of two [[region]]s (allowed: each cell in one)");
+      there = std::max(there, b.materials[i]);
     }
+  }
+  std::erase_if(all, [](const ElementBlock& b) { return b.node_tags.empty(); });
+  return all;
+}
+
+/// Blocks of one kind of cells as one.
+ElementBlock joined(const std::vector<ElementBlock>& blocks) {
+  ElementBlock all = blocks.front();
+  for (std::size_t b = 1; b < blocks.size(); ++b) {
+    all.node_tags.insert(all.node_tags.end(), blocks[b].node_tags.begin(), blocks[b].node_tags.end());
+    all.materials.insert(all.materials.end(), blocks[b].materials.begin(), blocks[b].materials.end());
+  }
   return all;
 }
 
@@ -62,7 +83,9 @@ MeshedBody read_cells(const MeshRequest& r, const std::vector<ElementBlock>& blo
   if (std::any_of(blocks.begin(), blocks.end(), [](const auto& b) { return b.order > 1; }))
     body.notes.push_back(
         fmt::format("the cells of higher order ({}) are taken by their corners, with straight edges", counts(blocks)));
-  body.mesh = read_mesh(r.file, alike ? corners_of(blocks) : split_into_tetrahedra(r.file, blocks), body.notes);
+  const std::vector<ElementBlock> cells = once(r.file, blocks);
+  const bool whole = alike && !(filled_anew && has_volumes(r));
+  body.mesh = read_mesh(r.file, whole ? joined(cells) : split_into_tetrahedra(r.file, cells), body.notes);
   return body;
 }
 
@@ -79,6 +102,32 @@ MeshedBody filled_anew(const MeshRequest& r, const MeshedBody& own) {
   body.coarser.pop_back();
   body.notes.insert(body.notes.begin(), own.notes.begin(), own.notes.end());
   body.notes.push_back("the body is the surface of the file's cells, filled with tetrahedra of the length asked for");
+  return body;
+}
+
+/// The body of the file's cells, which say where its regions are: cut into eight until they are as small as asked for.
+/// @throws InputError if they become too many.
+MeshedBody cut_finer(const MeshRequest& r, MeshedBody own) {
+  constexpr std::size_t most = 400'000;  // of quadratic elements some 2 million unknowns
+  const double inside = volume(own.mesh, own.mesh.nodes);
+  const double edge = r.edge > 0 ? r.edge / r.scale : edge_for(r.tetrahedra, inside);
+  const double coarsest = std::cbrt(6 * std::sqrt(2) * inside / static_cast<double>(own.mesh.tetrahedra.size()));
+  const auto times =
+      std::max(r.coarser.size(), static_cast<std::size_t>(std::max(0.0, std::round(std::log2(coarsest / edge)))));
+  const double finest = static_cast<double>(own.mesh.tetrahedra.size()) * std::pow(8, times);
+  if (finest > most)
+    refuse(r.file,
+           fmt::format("its {} tetrahedra, cut into eight {} times, would be {:.2g} (allowed: {:.2g}, as the "
+                       "regions of a mesh file are those of its cells; a coarser file, a .step or .geo file, or no "
+                       "reference: elements = [])",
+                       own.mesh.tetrahedra.size(), times, finest, double(most)));
+  MeshedBody body{own.mesh, own.notes, r.scale * coarsest / std::pow(2, times), {}, {}, 0};
+  for (std::size_t i = 0; i < times; ++i) {
+    if (times - i <= r.coarser.size()) body.coarser.push_back(body.mesh);
+    body.mesh = halved(body.mesh);
+  }
+  body.notes.push_back(fmt::format("the body is the file's {} tetrahedra, each cut into {} for the finest mesh",
+                                   own.mesh.tetrahedra.size(), static_cast<long>(std::pow(8, times))));
   return body;
 }
 
@@ -152,7 +201,7 @@ MeshedBody mesh_msh(const MeshRequest& r) {
   {
     const MshSession session(r.file);
     gmsh::model::mesh::renumberNodes();  // a file's numbers may have gaps of any size
-    if (const auto blocks = volume_elements(r.file, notes); !blocks.empty()) {
+    if (const auto blocks = volume_elements(r.file, r.volumes, notes); !blocks.empty()) {
       own = read_cells(r, blocks, std::move(notes));
       if (r.edge == 0 && r.tetrahedra == 0) return *own;
     } else {
@@ -164,7 +213,7 @@ MeshedBody mesh_msh(const MeshRequest& r) {
              "0 [m])");
     if (!own && !physical_surfaces().empty()) notes = {"the physical surfaces of a file without cells are not kept"};
   }
-  if (own) return filled_anew(r, *own);
+  if (own) return has_volumes(r) ? cut_finer(r, *std::move(own)) : filled_anew(r, *own);
   MeshedBody body = fill_surface(r, surface);
   body.notes.insert(body.notes.begin(), notes.begin(), notes.end());
   return body;

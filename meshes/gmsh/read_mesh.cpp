@@ -49,6 +49,7 @@ Mesh read_cells(const ElementBlock& cells, Nodes& nodes) {
     if (number == 0) number = count++;
 
   Mesh mesh;
+  mesh.materials = cells.materials;
   mesh.nodes.resize(count, 3);
   for (std::size_t tag = 0; tag < nodes.number.size(); ++tag)
     if (nodes.number[tag] >= 0) mesh.nodes.row(nodes.number[tag]) = nodes.position[tag];
@@ -127,6 +128,7 @@ void use_grid(Mesh& mesh, std::vector<int>& new_number) {
     return std::tie(p[2], p[1], p[0]) < std::tie(q[2], q[1], q[0]);
   });
   mesh.hexahedra = reordered(candidate.hexahedra, order);
+  if (!mesh.materials.empty()) mesh.materials = reordered(mesh.materials, order);
   mesh.curved.resize(0, 3);  // boxes have straight edges
   grid->cell_index = reordered(grid->cell_index, order);
 

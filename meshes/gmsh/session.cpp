@@ -63,7 +63,8 @@ void GmshSession::stop_on_error(const std::filesystem::path& file) const {
   refuse(file, "gmsh: " + *error);
 }
 
-std::vector<ElementBlock> elements(int dimension, const std::vector<int>& entities) {
+std::vector<ElementBlock> elements(int dimension, const std::vector<int>& entities,
+                                   const std::map<int, std::uint8_t>& materials) {
   std::vector<ElementBlock> blocks;
   for (const int entity : entities) {
     std::vector<int> types;
@@ -73,6 +74,10 @@ std::vector<ElementBlock> elements(int dimension, const std::vector<int>& entiti
       auto block = std::find_if(blocks.begin(), blocks.end(), [&](const auto& b) { return b.type == types[t]; });
       if (block == blocks.end()) block = blocks.insert(block, block_of(types[t]));
       block->node_tags.insert(block->node_tags.end(), node_tags[t].begin(), node_tags[t].end());
+      if (materials.empty()) continue;
+      const auto material = materials.find(entity);
+      block->materials.insert(block->materials.end(), element_tags[t].size(),
+                              material == materials.end() ? 0 : material->second);
     }
   }
   return blocks;
@@ -102,24 +107,72 @@ std::vector<int> volumes() {
 
 }  // namespace
 
-std::vector<ElementBlock> volume_elements(const std::filesystem::path& file, std::vector<std::string>& notes) {
+namespace {
+
+/// A physical volume and the entities in it.
+struct PhysicalVolume {
+  std::string name;  ///< its number if it has none
+  int number;
+  std::set<int> entities;
+};
+
+std::vector<PhysicalVolume> physical_volumes() {
   gmsh::vectorpair groups;
   gmsh::model::getPhysicalGroups(groups, 3);
-  std::set<int> all;
-  std::vector<std::string> names;
-  std::size_t largest = 0;  // entities of one group
+  std::vector<PhysicalVolume> all;
   for (const auto& [dimension, tag] : groups) {
     std::vector<int> members;
     gmsh::model::getEntitiesForPhysicalGroup(dimension, tag, members);
-    all.insert(members.begin(), members.end());
-    names.push_back(fmt::format("'{}'", name_of_group(dimension, tag)));
-    largest = std::max(largest, std::set<int>(members.begin(), members.end()).size());
+    all.push_back({name_of_group(dimension, tag), tag, {members.begin(), members.end()}});
   }
-  if (largest < all.size())
-    refuse(file, fmt::format("the physical volumes {} are parts of the body, and a body has one material (allowed: one "
-                             "physical volume that holds all of it, or none)",
-                             fmt::join(names, ", ")));
-  const auto blocks = elements(3, {all.begin(), all.end()}), whole = elements(3, volumes());
+  return all;
+}
+
+std::string names_of(const std::vector<PhysicalVolume>& groups) {
+  std::vector<std::string> names;
+  for (const PhysicalVolume& g : groups) names.push_back(fmt::format("'{}'", g.name));
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+/// The material of each entity that is in a region.
+std::map<int, std::uint8_t> materials_of(const std::filesystem::path& file, const std::vector<PhysicalVolume>& groups,
+                                         const std::vector<std::string>& volumes) {
+  std::map<int, std::uint8_t> materials;
+  for (std::size_t r = 0; r < volumes.size(); ++r) {
+    if (volumes[r].empty()) continue;
+    const auto named = std::find_if(groups.begin(), groups.end(), [&](const PhysicalVolume& g) {
+      return g.name == volumes[r] || std::to_string(g.number) == volumes[r];
+    });
+    if (named == groups.end())
+      refuse(file, fmt::format("has no physical volume '{}', which a [[region]] names (allowed: {})", volumes[r],
+                               groups.empty() ? "none, as the file has none" : names_of(groups)));
+    for (const int entity : named->entities)
+      if (!materials.emplace(entity, static_cast<std::uint8_t>(r + 1)).second)
+        refuse(file, fmt::format("the physical volumes of two [[region]]s, one of them '{}', have a part in common "
+                                 "(allowed: each part in one)",
+                                 volumes[r]));
+  }
+  return materials;
+}
+
+}  // namespace
+
+std::vector<ElementBlock> volume_elements(const std::filesystem::path& file, const std::vector<std::string>& regions,
+                                          std::vector<std::string>& notes) {
+  const std::vector<PhysicalVolume> groups = physical_volumes();
+  const std::map<int, std::uint8_t> materials = materials_of(file, groups, regions);
+  std::set<int> all;
+  std::size_t largest = 0;  // entities of one group
+  for (const PhysicalVolume& g : groups) {
+    all.insert(g.entities.begin(), g.entities.end());
+    largest = std::max(largest, g.entities.size());
+  }
+  if (materials.empty() && largest < all.size())
+    refuse(file, fmt::format("the physical volumes {} are parts of the body, which may be of several materials "
+                             "(allowed: one physical volume that holds all of it, none, or a [[region]] with volume = "
+                             "\"{}\" for those that are not of [material])",
+                             names_of(groups), groups.back().name));
+  const auto blocks = elements(3, {all.begin(), all.end()}, materials), whole = elements(3, volumes());
   if (blocks.empty()) return whole;
   if (const std::size_t left_out = count_of(whole) - count_of(blocks); left_out > 0)
     notes.push_back(fmt::format("{} of the file's {} cells are in no physical volume and are no part of the body",

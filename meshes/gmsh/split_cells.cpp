@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <optional>
 #include <set>
 
 namespace springproof {
@@ -26,12 +27,13 @@ Triangle sorted_triangle(Triangle t) {
   return t;
 }
 
-/// Calls act(corners, facets) for each cell.
+/// Calls act(corners, facets, material) for each cell.
 template <class Act>
 void for_each_cell(const std::vector<ElementBlock>& blocks, const Act& act) {
   for (const ElementBlock& b : blocks)
     for (std::size_t i = 0; i < b.node_tags.size(); i += b.nodes)
-      act(std::vector<std::size_t>(&b.node_tags[i], &b.node_tags[i] + b.corners), facets_of_cells.at(b.corners));
+      act(std::vector<std::size_t>(&b.node_tags[i], &b.node_tags[i] + b.corners), facets_of_cells.at(b.corners),
+          b.materials.empty() ? std::nullopt : std::optional(b.materials[i / b.nodes]));
 }
 
 std::map<std::size_t, Vec3> positions() {
@@ -57,7 +59,7 @@ ElementBlock split_into_tetrahedra(const std::filesystem::path& file, const std:
       refuse(file, fmt::format("{} cells are of the kind '{}' (allowed: tetrahedra, hexahedra, prisms, pyramids)",
                                b.count(), b.name));
   std::set<Triangle> known;  // of cells with triangular facets, beside which quadrilaterals are cut alike
-  for_each_cell(blocks, [&](const std::vector<std::size_t>& corners, const Facets& facets) {
+  for_each_cell(blocks, [&](const std::vector<std::size_t>& corners, const Facets& facets, const auto&) {
     for (const std::vector<std::size_t>& f : facets)
       if (f.size() == 3) known.insert(sorted_triangle({corners[f[0]], corners[f[1]], corners[f[2]]}));
   });
@@ -66,7 +68,7 @@ ElementBlock split_into_tetrahedra(const std::filesystem::path& file, const std:
   std::vector<std::size_t> middles;
   std::vector<double> coordinates;
   ElementBlock all{.type = 4, .name = "Tetrahedron 4", .order = 1, .nodes = 4, .corners = 4, .node_tags = {}};
-  for_each_cell(blocks, [&](const std::vector<std::size_t>& corners, const Facets& facets) {
+  const auto split = [&](const std::vector<std::size_t>& corners, const Facets& facets) {
     if (corners.size() == 4) {
       all.node_tags.insert(all.node_tags.end(), corners.begin(), corners.end());
       return;
@@ -87,6 +89,12 @@ ElementBlock split_into_tetrahedra(const std::filesystem::path& file, const std:
       }
       for (const auto& [a, b, d] : triangles) all.node_tags.insert(all.node_tags.end(), {a, d, b, middle});
     }
+  };
+  for_each_cell(blocks, [&](const std::vector<std::size_t>& corners, const Facets& facets,
+                            const std::optional<std::uint8_t>& material) {
+    const std::size_t before = all.count();
+    split(corners, facets);
+    if (material) all.materials.resize(all.materials.size() + all.count() - before, *material);
   });
   gmsh::vectorpair volumes;
   gmsh::model::getEntities(volumes, 3);

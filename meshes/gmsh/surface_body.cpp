@@ -84,7 +84,7 @@ Mesh fill(const MeshRequest& r, const Surface& surface) {
   gmsh::model::setPhysicalName(2, gmsh::model::addPhysicalGroup(2, entities), "surface");
   session.stop_on_error(r.file);
   std::vector<std::string> none;  // a surface and the volume in it
-  return fill_with_tetrahedra(r.file, session, none);
+  return fill_with_tetrahedra(r, session, none);
 }
 
 }  // namespace
@@ -181,6 +181,9 @@ void add_parts(const Surface& raw, Mesh& mesh) {
 }
 
 MeshedBody fill_surface(const MeshRequest& request, const Surface& raw) {
+  if (has_volumes(request))
+    refuse(request.file,
+           "holds a surface, and so no physical volume for a [[region]] (allowed: box_m, near or beyond)");
   auto [surface, notes] = check_surface(raw, request.file.string());
   const double inside = volume(surface);
   MeshRequest r = request;

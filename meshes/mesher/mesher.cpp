@@ -212,11 +212,12 @@ MeshedBody mesh_to_cut(MeshRequest request) {
   }
 }
 
-Mesh mesh_geo(const fs::path& geo, const Vec3& size, const Cells& cells, MeshKind kind) {
+Mesh mesh_geo(const fs::path& geo, const Vec3& size, const Cells& cells, MeshKind kind,
+              const std::vector<std::string>& volumes) {
   require_file(geo, "a script for gmsh, NAME.geo");
   if (!size.allFinite() || !(size.minCoeff() > 0)) refuse(geo, "size_m: three positive lengths are needed");
   if (*std::min_element(cells.begin(), cells.end()) < 1) refuse(geo, "cells: three counts >= 1 are needed");
-  const MeshRequest request{.file = geo, .size = size, .cells = cells, .kind = kind};
+  const MeshRequest request{.file = geo, .size = size, .cells = cells, .kind = kind, .volumes = volumes};
   static std::mutex mutex;
   static std::map<std::string, Mesh> made;
   const std::string key = to_cbor(request);

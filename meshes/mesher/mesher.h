@@ -47,9 +47,12 @@ struct MeshRequest {
   Vec3 size = Vec3::Zero();  ///< of a .geo [m]; zero: the script's own
   Cells cells = {0, 0, 0};   ///< of a .geo cut into nx x ny x nz cells; zero: by `edge`
   MeshKind kind{};
-  double edge = 0;                   ///< [m] > 0: tetrahedra with edges of about this length
-  double scale = 1;                  ///< multiplies the coordinates of the file
-  int tetrahedra = 0;                ///< > 0 and no edge: about so many tetrahedra
+  double edge = 0;     ///< [m] > 0: tetrahedra with edges of about this length
+  double scale = 1;    ///< multiplies the coordinates of the file
+  int tetrahedra = 0;  ///< > 0 and no edge: about so many tetrahedra
+  /// The physical volume of the file, by name or number, that each region of the body is; "": it is none of them.  Of a
+  /// solid the number of one of its solids.
+  std::vector<std::string> volumes = {};
   std::vector<double> coarser = {};  ///< factors > 1, falling: also meshes whose cells are larger by these (size_ratio)
 };
 
@@ -88,6 +91,8 @@ MeshedBody mesh_to_cut(MeshRequest request);
 /// Meshes a .geo with the parameters size_x size_y size_z [m], nx ny nz and tetrahedra (0 or 1); physical surfaces name
 /// the patches.  The grid is detected.  A process meshes the same but once, and keeps the mesh.  Thread-safe.
 /// @throws as mesh_body
-Mesh mesh_geo(const std::filesystem::path& geo, const Vec3& size, const Cells& cells, MeshKind kind = {});
+/// @param volumes as MeshRequest::volumes
+Mesh mesh_geo(const std::filesystem::path& geo, const Vec3& size, const Cells& cells, MeshKind kind = {},
+              const std::vector<std::string>& volumes = {});
 
 }  // namespace springproof

@@ -47,6 +47,7 @@ Mesh sound(Mesh mesh) {
   if ((cells + mesh.tetrahedra.size() == 0 && mesh.patches.empty()) || !mesh.nodes.allFinite() ||
       !within(mesh.hexahedra, nodes) || !within(mesh.tetrahedra, nodes) || !facets_fit ||
       (mesh.curved.rows() > 0 && static_cast<std::size_t>(mesh.curved.rows()) != 27 * cells) ||
+      (!mesh.materials.empty() && mesh.materials.size() != cells + mesh.tetrahedra.size()) ||
       (mesh.grid && !fits(*mesh.grid, cells)))
     throw std::runtime_error("a mesh that does not hold together");
   return mesh;
@@ -82,7 +83,8 @@ std::string to_cbor(const MeshRequest& r) {
                {"edge", r.edge},
                {"about", r.tetrahedra},
                {"coarser", r.coarser},
-               {"scale", r.scale}});
+               {"scale", r.scale},
+               {"volumes", r.volumes}});
 }
 
 MeshRequest mesh_request_from_cbor(const std::string& bytes) {
@@ -96,6 +98,7 @@ MeshRequest mesh_request_from_cbor(const std::string& bytes) {
   r.tetrahedra = j.at("about");
   r.coarser = j.at("coarser").get<std::vector<double>>();
   r.scale = j.at("scale");
+  r.volumes = j.at("volumes").get<std::vector<std::string>>();
   return r;
 }
 

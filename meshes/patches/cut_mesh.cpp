@@ -43,7 +43,7 @@ void split(std::vector<Item>& items, std::vector<std::vector<int>>& at, int a, i
 }  // namespace
 
 CutMesh::CutMesh(const Mesh& mesh)
-    : cells_(mesh.tetrahedra), cells_at_(mesh.nodes.rows()), facets_at_(mesh.nodes.rows()) {
+    : cells_(mesh.tetrahedra), materials_(mesh.materials), cells_at_(mesh.nodes.rows()), facets_at_(mesh.nodes.rows()) {
   for (const auto& X : mesh.nodes.rowwise()) surface_.points.push_back(X.transpose());
   for (std::size_t c = 0; c < cells_.size(); ++c)
     for (const int n : cells_[c]) cells_at_[n].push_back(static_cast<int>(c));
@@ -67,7 +67,9 @@ int CutMesh::bisect(int a, int b, const Vec3& at) {
   surface_.points.push_back(at);
   cells_at_.emplace_back();
   facets_at_.emplace_back();
-  split(cells_, cells_at_, a, b, m, [](int) {});
+  split(cells_, cells_at_, a, b, m, [&](int cell) {
+    if (!materials_.empty()) materials_.push_back(std::uint8_t(materials_[cell]));
+  });
   split(surface_.triangles, facets_at_, a, b, m,
         [&](int facet) { patches_.push_back(std::vector<int>(patches_[facet])); });
   return m;
@@ -151,8 +153,14 @@ bool CutMesh::keeps_surface(int node, const Vec3& to) const {
   return true;
 }
 
+bool CutMesh::is_between_materials(int node) const {
+  if (materials_.empty()) return false;
+  const std::vector<int>& around = cells_at_[node];
+  return std::any_of(around.begin(), around.end(), [&](int c) { return materials_[c] != materials_[around[0]]; });
+}
+
 bool CutMesh::slide(int node, const Vec3& to) {
-  if (!keeps_surface(node, to)) return false;
+  if (is_between_materials(node) || !keeps_surface(node, to)) return false;
   const double before = worst_shape(node);
   const Vec3 from = points()[node];
   surface_.points[node] = to;
@@ -180,6 +188,7 @@ Mesh CutMesh::mesh(const std::vector<std::string>& patches) const {
   for (std::size_t n = 0; n < points().size(); ++n)
     mesh.nodes.row(static_cast<Eigen::Index>(n)) = points()[n].transpose();
   mesh.tetrahedra = cells_;
+  mesh.materials = materials_;
   for (const std::string& name : patches) mesh.patches.push_back({name, {}});
   for (std::size_t f = 0; f < patches_.size(); ++f)
     for (const int p : patches_[f])

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "meshes/mesh.h"
@@ -20,6 +22,11 @@ class CutMesh {
   const Surface& surface() const { return surface_; }  ///< all nodes and the outer facets
   const std::vector<int>& facets_at(int node) const { return facets_at_[node]; }
   std::size_t cells() const { return cells_.size(); }
+  const std::vector<Tetrahedron>& tetrahedra() const { return cells_; }
+
+  /// Of each cell, as Mesh::materials; empty: one.
+  const std::vector<std::uint8_t>& materials() const { return materials_; }
+  void set_materials(std::vector<std::uint8_t> materials) { materials_ = std::move(materials); }
 
   /// Puts a facet into a patch: the next number is that of a new one.
   void add_to_patch(std::size_t facet, int patch) { patches_[facet].push_back(patch); }
@@ -34,8 +41,8 @@ class CutMesh {
   /// Bisects the edge in the middle, longer ones beside it first: shapes stay as they are (Rivara).
   void refine(int a, int b);
 
-  /// Moves a node if that keeps the cells' shapes, the borders of patches and, to 0.03 of the shortest edge, a smooth
-  /// surface.
+  /// Moves a node if that keeps the cells' shapes, the borders of patches and regions and, to 0.03 of the shortest
+  /// edge, a smooth surface.
   bool slide(int node, const Vec3& to);
 
   /// Moves nodes, or none if a cell would turn over.
@@ -49,6 +56,7 @@ class CutMesh {
 
  private:
   bool is_edge(int a, int b) const;
+  bool is_between_materials(int node) const;
   double length(int a, int b) const { return (points()[a] - points()[b]).norm(); }
   double shape(const Tetrahedron& cell) const;
   double worst_shape(int node) const;
@@ -57,6 +65,7 @@ class CutMesh {
 
   Surface surface_;
   std::vector<Tetrahedron> cells_;
+  std::vector<std::uint8_t> materials_;
   std::vector<std::vector<int>> patches_;               ///< of each facet, ascending
   std::vector<std::vector<int>> cells_at_, facets_at_;  ///< of each node
 };

@@ -51,6 +51,7 @@ std::shared_ptr<SolidBody> in_tetrahedra(const Experiment& e) {
 /// [(body, material, forces n x 3, displacement n x 3)], one for each material of the case.
 py::list problems_of(const fs::path& file) {
   const Experiment e = read_experiment(file);
+  require_one_material(e, "springs in Python");
   const std::shared_ptr<SolidBody> body = long_call([&] { return in_tetrahedra(e); });
   py::list all;
   for (const IsotropicMaterial& material : e.materials) {

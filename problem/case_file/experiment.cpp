@@ -10,17 +10,11 @@
 #include "problem/case_file/experiment_parts.h"
 #include "problem/files/named_files.h"
 #include "problem/large_strain.h"
-#include "problem/moduli.h"
 #include "problem/system/nearest_name.h"
 #include "problem/system/shortened.h"
 
 namespace springproof {
 namespace {
-
-Range range_of(const ModulusName& modulus) {
-  if (modulus.member == &Moduli::poisson_ratio) return {"-1 < poisson_ratio < 0.5", -1, 0.5};
-  return modulus.member == &Moduli::lame_lambda ? any_number : positive_number;
-}
 
 std::vector<std::string> kinematics_names() {
   std::vector<std::string> names = {"linear"};
@@ -110,42 +104,14 @@ Body read_body(const TomlValue& value) {
   return body;
 }
 
-/// Two moduli, each a number or a list; a single number is kept fixed while the other runs through its list, and two
-/// lists of the same length are read in pairs.
+/// Each Poisson's ratio once.
 std::vector<IsotropicMaterial> read_materials(const TomlValue& value) {
-  const TomlTable table(value, keys_of("material"));
-  double density = 1000;
-  if (const auto given = table.find("density_kg_m3")) density = as_number(*given, positive_number);
-  std::vector<std::string> names;
-  std::vector<Moduli> solids(1);
-  for (const ModulusName& modulus : modulus_names) {
-    const auto given = table.find(modulus.key);
-    if (!given) continue;
-    names.emplace_back(modulus.key);
-    const auto items = one_or_several(*given);
-    if (solids.size() == 1) solids.resize(items.size(), solids.front());
-    if (items.size() != 1 && items.size() != solids.size())
-      refuse(*given, fmt::format("is a list of {}", items.size()),
-             fmt::format("a list of {}, as above", solids.size()));
-    for (std::size_t i = 0; i < solids.size(); ++i)
-      solids[i].*modulus.member = as_number(items[items.size() == 1 ? 0 : i], range_of(modulus));
-  }
-  if (names.size() != 2)
-    refuse(value,
-           fmt::format("has {} elastic moduli{}{}", names.size(), names.empty() ? "" : ": ", fmt::join(names, ", ")),
-           "exactly two of youngs_modulus_Pa, poisson_ratio, shear_modulus_Pa, bulk_modulus_Pa, lame_lambda_Pa");
-  std::vector<IsotropicMaterial> materials;
-  for (const Moduli& given : solids) {
-    try {
-      materials.push_back(material_from(given, density));
-    } catch (const std::invalid_argument& error) {
-      throw InputError(location_of(value), fmt::format("material: {}", error.what()));
-    }
-    const double nu = materials.back().poisson_ratio;
-    for (std::size_t i = 0; i + 1 < materials.size(); ++i)
-      if (materials[i].poisson_ratio == nu)
-        refuse(value, fmt::format("has the Poisson's ratio {} twice", nu), "each Poisson's ratio once");
-  }
+  std::vector<IsotropicMaterial> materials = read_moduli(TomlTable(value, keys_of("material")), 1000);
+  for (std::size_t i = 0; i < materials.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (materials[i].poisson_ratio == materials[j].poisson_ratio)
+        refuse(value, fmt::format("has the Poisson's ratio {} twice", materials[i].poisson_ratio),
+               "each Poisson's ratio once");
   return materials;
 }
 
@@ -212,15 +178,16 @@ void require_density(const TomlTable& document, const Experiment& experiment) {
     missing(document.at("material"), "density_kg_m3", "a finite number > 0, since a load is gravity_m_s2");
 }
 
-/// Grading would move the borders of the patches of a block, which are lines of its grids.
+/// Grading would move the borders of the patches and regions of a block, which are lines of its grids.
 void keep_grids_even(const TomlTable& document, Experiment& experiment) {
-  if (experiment.patches.empty() || experiment.body.is_voxels()) return;
+  if ((experiment.patches.empty() && experiment.regions.empty()) || experiment.body.is_voxels()) return;
   experiment.reference.grading = 1;
   const auto reference = document.find("reference");
   if (!reference) return;
   const auto grading = TomlTable(*reference, keys_of("reference")).find("grading");
   if (grading && as_number(*grading, positive_number) != 1)
-    refuse(*grading, "would move the border of a [[patch]], which is a line of the grid", "1, beside a [[patch]]");
+    refuse(*grading, "would move the border of a [[patch]] or [[region]], which is a line of the grid",
+           "1, beside a [[patch]] or [[region]]");
 }
 
 Experiment read_tables(const TomlTable& document, Experiment experiment) {
@@ -230,6 +197,7 @@ Experiment read_tables(const TomlTable& document, Experiment experiment) {
   experiment.body = read_body(document.at("body"));
   experiment.patches = read_patch_rules(document);
   experiment.materials = read_materials(document.at("material"));
+  experiment.regions = read_regions(document, experiment);
   for (const TomlValue& value : document.tables("load"))
     for (const Load& load : read_load(value)) {
       experiment.loads.push_back(load);
@@ -259,6 +227,7 @@ Experiment read_tables(const TomlTable& document, Experiment experiment) {
   read_measured(document, experiment);
   read_expectations(document, experiment);
   read_published(document, experiment);
+  check_regions(experiment);
   return experiment;
 }
 

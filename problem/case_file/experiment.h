@@ -19,6 +19,7 @@
 #include "problem/model_choice.h"
 #include "problem/patch_rule.h"
 #include "problem/plane.h"
+#include "problem/region.h"
 #include "problem/relaxation.h"
 #include "problem/system/input_error.h"
 
@@ -137,6 +138,7 @@ struct Experiment {
   Relaxation relaxation;                     ///< of each of them; their moduli are those at long times
   SourceLocation relaxation_where;           ///< of [material.relaxation]
   double loaded_for = std::numeric_limits<double>::infinity();  ///< of equilibria [s]
+  std::vector<MaterialRegion> regions;       ///< parts of the body that are of other materials
   std::vector<Load> loads;
   std::vector<AttachedMass> masses;            ///< beside the body's own
   std::size_t weights = 0;                     ///< loads, the last of `loads`, that are the weight of `masses`
@@ -184,6 +186,10 @@ PatchRule parse_patch_rule(const std::string& name, const std::string& text, con
 /// Kelvin's solution of the case's point force; empty unless there are exactly one point force and one material, and
 /// the kinematics are linear.
 std::optional<KelvinSolution> kelvin_of(const Experiment& experiment);
+
+/// @param what names one of several things that know one material: "advise"
+/// @throws InputError at the first [[region]], if the case has any.
+void require_one_material(const Experiment& experiment, const std::string& what);
 
 /// @throws InputError at the first load on a patch that is not among `patches`, those of the body.
 void check_patches(const Experiment& experiment, const std::vector<std::string>& patches);

@@ -18,6 +18,24 @@ void read_masses(const TomlTable& document, Experiment& experiment);
 /// The [[patch]] tables, in order.
 std::vector<PatchRule> read_patch_rules(const TomlTable& document);
 
+/// Two moduli of a table, each a number or a list; a single number is kept fixed while the other runs through its list,
+/// and two lists of the same length are read in pairs.
+/// @param density [kg/m^3] where the table has none
+std::vector<IsotropicMaterial> read_moduli(const TomlTable& table, double density);
+
+/// The [[region]] tables, in order; the materials must have been read.
+std::vector<MaterialRegion> read_regions(const TomlTable& document, const Experiment& experiment);
+
+/// @throws InputError at what is not computed of a body with regions; all else must have been read.
+void check_regions(const Experiment& experiment);
+
+/// A box by two corners.
+PatchRule::Box read_box(const TomlValue& value);
+/// One side of a plane.
+PatchRule::Beyond read_beyond(const TomlValue& value);
+/// What is near to a point.
+PatchRule::Near read_near(const TomlValue& value);
+
 /// A list of elements, each once.
 std::vector<std::string> read_elements(const TomlValue& value, const std::vector<std::string>& allowed);
 

@@ -7,7 +7,6 @@
 #include "problem/case_file/experiment_parts.h"
 
 namespace springproof {
-namespace {
 
 PatchRule::Box read_box(const TomlValue& value) {
   const auto corners = as_list_of(2, value, "two corners, [[x, y, z], [x, y, z]]");
@@ -20,26 +19,28 @@ PatchRule::Box read_box(const TomlValue& value) {
   return box;
 }
 
+PatchRule::Beyond read_beyond(const TomlValue& value) {
+  const TomlTable table(value, keys_of("patch.beyond"));
+  return {as_vector(table.at("point_m")), as_direction(table.at("normal"))};
+}
+
+PatchRule::Near read_near(const TomlValue& value) {
+  const TomlTable table(value, keys_of("patch.near"));
+  return {as_vector(table.at("point_m")), as_number(table.at("radius_m"), positive_number)};
+}
+
+namespace {
+
 BodySide read_side(const TomlValue& value) {
   const auto names = names_of(BodySide{});
   const std::string name = as_choice(value, {names.begin(), names.end()});
   return static_cast<BodySide>(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
-PatchRule::Beyond read_beyond(const TomlValue& value) {
-  const TomlTable table(value, keys_of("patch.beyond"));
-  return {as_vector(table.at("point_m")), as_direction(table.at("normal"))};
-}
-
 PatchRule::Facing read_facing(const TomlValue& value) {
   const TomlTable table(value, keys_of("patch.facing"));
   return {as_direction(table.at("direction")),
           as_number(table.at("within_deg"), {"an angle > 0 and <= 180", 0, 180, false, true})};
-}
-
-PatchRule::Near read_near(const TomlValue& value) {
-  const TomlTable table(value, keys_of("patch.near"));
-  return {as_vector(table.at("point_m")), as_number(table.at("radius_m"), positive_number)};
 }
 
 PatchRule read_rule(const TomlValue& value) {

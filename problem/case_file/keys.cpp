@@ -26,6 +26,7 @@ constexpr Key file_keys[] = {
   {"body",       "the body and its lattices",                       "a table [body] with geo, size_m, cells",      required, ""},
   {"patch",      "parts of its surface",                            "tables headed [[patch]]",                     "those of the body", ""},
   {"material",   "elastic moduli and density",                      "a table [material] with two moduli",          required, ""},
+  {"region",     "parts of the body of other materials",            "tables headed [[region]]",                    "one material", ""},
   {"load",       "supports and loads",                              "tables headed [[load]]",                      "required, but beside [dynamics]", ""},
   {"mass",       "masses hung on the body or glued to it",          "tables headed [[mass]]",                      "none", ""},
   {"compare",    "models and measures",                             "a table",                                     "hybmss, with three measures", ""},
@@ -97,6 +98,20 @@ constexpr Key relaxation_keys[] = {
 constexpr Key branch_keys[] = {
   {"share",  "of the long-time shear modulus", "a number > 0, up to 1000",    required, "0.116"},
   {"time_s", "in which its stress falls to 1/e",           "a finite number > 0, its own", required, "0.27"},
+};
+
+constexpr Key region_keys[] = {
+  {"name",              "its name",                                  "a name",                               required,          "\"tumour\""},
+  {"volume",            "a physical volume of the body's file, or a solid by number", "a string",          "a place",     "\"tumour\""},
+  {"box_m",             "a box",                                     "two corners, [[x, y, z], [x, y, z]]",  "a place",     "[[0, 0, 0], [0.1, 0.1, 0.02]]"},
+  {"near",              "a ball",                                    "a table",                              "a place",     "{ point_m = [0.05, 0.05, 0], radius_m = 0.03 }"},
+  {"beyond",            "one side of a plane",                       "a table",                              "a place",     "{ point_m = [0, 0, 0.01], normal = [0, 0, -1] }"},
+  {"youngs_modulus_Pa", "as of [material]",                          above_0,                                "two moduli",      "1e6"},
+  {"poisson_ratio",     "",                                          "-1 < poisson_ratio < 0.5",             "two moduli",      "0.45"},
+  {"shear_modulus_Pa",  "",                                          above_0,                                "two moduli",      "4e5"},
+  {"bulk_modulus_Pa",   "",                                          above_0,                                "two moduli",      "1e6"},
+  {"lame_lambda_Pa",    "",                                          "a finite number",                      "two moduli",      "4e5"},
+  {"density_kg_m3",     "",                                          above_0,                                "the body's",      "1100"},
 };
 
 constexpr Key on = {"on", "where it acts", "a patch name or a list of them", required, "\"x_min\""};
@@ -283,13 +298,14 @@ constexpr Key input_keys[] = {
 constexpr KeyTable tables[] = {
   {"",                           "The file",                         "Every table of a case.",                                      file_keys},
   {"body",                       "[body]",                           "",                                                            body_keys},
-  {"patch",                      "[[patch]]",                        "A part of the surface, where all its conditions hold. Facets of a body of voxels are cut along its border (with `facing`, they are taken whole); of a body of hexahedra the border must run along lines of every grid, those of the reference too (its finest cells, half and a quarter of them). A box that reaches below the edge of a face also takes that strip of the side faces.", patch_keys},
+  {"patch",                      "[[patch]]",                        "A part of the surface, where all its conditions hold. Facets of a body of voxels are cut along its border (with `facing`, taken whole); of hexahedra the border must run along lines of every grid, those of the reference too (its finest cells, half and a quarter). A box that reaches below the edge of a face also takes that strip of its sides.", patch_keys},
   {"patch.beyond",               "",                                 "",                                                            beyond_keys},
   {"patch.facing",               "",                                 "",                                                            facing_keys},
   {"patch.near",                 "",                                 "",                                                            near_keys},
   {"material",                   "[material]",                       "Two moduli. A single number goes with each of a list; two lists are read in pairs.", material_keys},
   {"material.relaxation",        "",                                 "",                                                            relaxation_keys},
   {"material.relaxation.branches", "",                               "",                                                            branch_keys},
+  {"region",                     "[[region]]",                       "A part of the body of another material; where two overlap, the later one. At small strain, by finite elements and hybmss_avg in cut cells.", region_keys},
   {"load.displacement_m",        "a displacement",                   "",                                                            displacement_keys},
   {"load.displacement_gradient", "an affine displacement",           "",                                                            affine_keys},
   {"load.rotation_deg",          "a rotation",                       "",                                                            rotation_keys},
@@ -340,9 +356,9 @@ constexpr std::pair<std::string_view, std::string_view> usual_names[] = {
   {"contact",         "there is no contact but with a plane: plane of [dynamics]"},
   {"self_contact",    "there is no contact but with a plane: plane of [dynamics]"},
   {"sphere",          "there is no contact but with a plane: plane of [dynamics]"},
-  {"region",          "a body has one material"},
-  {"regions",         "a body has one material"},
-  {"materials",       "a body has one material: [material]"},
+  {"regions",         "[[region]] is a part of the body of another material"},
+  {"materials",       "[material] is the body's, [[region]] that of a part of it"},
+  {"inclusion",       "[[region]] is a part of the body of another material"},
   {"fibres",          "materials are isotropic: there are no fibres"},
   {"fibers",          "materials are isotropic: there are no fibres"},
 };

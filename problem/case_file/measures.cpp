@@ -88,6 +88,22 @@ std::vector<std::string> stress_rows(const Experiment& experiment) {
   return rows;
 }
 
+/// What is measured of a region, with its unit.
+const std::vector<std::pair<std::string, std::string>> of_region = {
+    {".volume_change", "1"}, {".mean_stress", "Pa"}, {".pressure", "Pa"}, {".displacement", "m"}, {".energy", "J"}};
+
+std::vector<std::string> region_rows(const Experiment& experiment) {
+  std::vector<std::string> rows;
+  for (const MaterialRegion& r : experiment.regions) {
+    const std::string region = "region." + r.name;
+    for (const char* scalar : {".volume_change", ".pressure", ".energy"}) rows.push_back(region + scalar);
+    for (const char* component : {".xx", ".yy", ".zz", ".xy", ".yz", ".xz"})
+      rows.push_back(region + ".mean_stress" + component);
+    add_vector_rows(region + ".displacement", rows);
+  }
+  return rows;
+}
+
 std::vector<std::string> network_rows(const Experiment&) {
   return {"network.nodes", "network.springs", "network.springs_per_node", "network.mean_length",
           "network.length_deviation"};
@@ -191,6 +207,8 @@ const std::vector<Measure>& measure_table() {
      "", "", measured_rows},
     {"probe", value, {{"displacement", "m"}}, "displacement.PROBE.x|y|z|magnitude [m]", "", "", probe_rows},
     {"stress", value, {{"stress", "Pa"}}, "stress.PROBE.xx|yy|zz|xy|yz|xz [Pa], finite elements only", "", "", stress_rows},
+    {"region", value, {{"region", "1"}}, "region.REGION.volume_change, .mean_stress.xx|yy|zz|xy|yz|xz and .pressure [Pa], .displacement.x|y|z|magnitude [m] in the mean, .energy [J] of a [[region]]",
+     "", "", region_rows},
     {"motion", value, {{"motion.period", "s"}, {"motion.amplitude", "m"}, {"motion.arrival", "s"}, {"motion.contact_time", "s"}, {"motion", "1"}},
      "of a motion: period [s], amplitude [m], of a pulse arrival [s] of the first probe; of a damped one damping_ratio; on a plane contact_time [s] and restitution; energy_drift, momentum_drift, angular_momentum_drift, inertia_excess of free bodies", "", "", motion_rows},
     {"motion_error", distance, {{"motion_error", "1"}},
@@ -215,7 +233,21 @@ const Measure* measure_of(const std::string& row) {
   return nullptr;
 }
 
+std::string quantity_of_region(const std::string& row) {
+  if (!row.starts_with("region.")) return {};
+  std::size_t last = 0;
+  std::string found;
+  for (const auto& [quantity, unit] : of_region)
+    if (const std::size_t at = row.rfind(quantity); at != std::string::npos && at > last) {
+      last = at;
+      found = quantity.substr(1);
+    }
+  return found;
+}
+
 std::string unit_of(const std::string& row) {
+  for (const auto& [quantity, unit] : of_region)
+    if (quantity_of_region(row) == quantity.substr(1)) return unit;
   std::size_t longest = 0;
   std::string found = "1";
   if (const Measure* measure = measure_of(row))

@@ -41,6 +41,9 @@ const std::vector<MotionMeasure>& motion_measures();
 /// The measure that produces the row of this name, e.g. `reaction` for force.x_min.z; nullptr: none.
 const Measure* measure_of(const std::string& row);
 
+/// "volume_change", "mean_stress", "pressure", "displacement" or "energy" of a row of a region; of others "".
+std::string quantity_of_region(const std::string& row);
+
 /// "m", "Pa", "N", "N m", "J", "J/m2", "1/m" or "1".
 std::string unit_of(const std::string& row);
 

@@ -53,6 +53,7 @@ Experiment read_case(const std::string& name) {
     throw InputError(
         experiment.relaxation_where,
         "material.relaxation: has no place in exported files, whose springs would not relax (allowed: none)");
+  require_one_material(experiment, "export");
   return experiment;
 }
 

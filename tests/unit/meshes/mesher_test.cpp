@@ -198,7 +198,7 @@ TEST_F(Mesher, CoincidentNodesOfPartsAreJoined) {
 
 TEST_F(Mesher, PartsOfTheBodyAreNoMaterials) {
   EXPECT_SAYS(message_of({.file = write("two.msh", two_tetrahedra(0, 2))}),
-              "the physical volumes 'soft', 'stiff' are parts of the body, and a body has one material");
+              "the physical volumes 'soft', 'stiff' are parts of the body, which may be of several materials");
   const MeshedBody body = mesh_body({.file = write("one.msh", two_tetrahedra(0, 0))});
   EXPECT_EQ(body.mesh.tetrahedra.size(), 1u);
   EXPECT_SAYS(body.notes[0], "1 of the file's 2 cells are in no physical volume");

@@ -54,8 +54,9 @@ TEST(PatchRules, KeepTheGridsOfHexahedraEven) {
                             "[[patch]]\nname = \"low\"\nfacing = { direction = [0, 0, -1], within_deg = 10 }\n";
   EXPECT_EQ(parse_experiment(test::small_case, "case.toml").reference.grading, 1.5);
   EXPECT_EQ(parse_experiment(block, "case.toml").reference.grading, 1);
-  EXPECT_NE(message_of(block + "[reference]\ngrading = 1.5\n").find("would move the border of a [[patch]]"),
-            std::string::npos);
+  EXPECT_NE(
+      message_of(block + "[reference]\ngrading = 1.5\n").find("would move the border of a [[patch]] or [[region]]"),
+      std::string::npos);
 }
 
 TEST(PatchRules, NoneIsTheUsualCase) { EXPECT_TRUE(parse_experiment(test::small_case, "case.toml").patches.empty()); }

@@ -21,12 +21,14 @@ Values beside(const std::string& table, const std::string& key) {
       {"body", {{"size_m", "[0.06, 0.01, 0.01]"}, {"cells", "[12, 2, 2]"}}},
       {"patch", {{"box_m", "[[0, 0, 0], [1, 1, 1]]"}}},
       {"material", {{"youngs_modulus_Pa", "1e6"}, {"poisson_ratio", "0.25"}}},
+      {"region", {{"volume", "\"tumour\""}, {"youngs_modulus_Pa", "1e6"}, {"poisson_ratio", "0.25"}}},
       {"expect", {{"value", "1"}, {"within", "0.04"}}},
       {"mass", {{"on", "\"x_max\""}}},
       {"load_case", {{"with", "{ mass = [] }"}}},
       {"input", {{"of", "\"body.size_m[2]\""}, {"u", "3e-4"}}},
       {"external", {{"file", "\"abaqus.csv\""}}}};
-  static const Values voxels = {{"cells", ""}, {"voxels", "100"}}, no_young = {{"youngs_modulus_Pa", ""}};
+  static const Values voxels = {{"cells", ""}, {"voxels", "100"}}, no_young = {{"youngs_modulus_Pa", ""}},
+                      no_volume = {{"volume", ""}};
   static const std::map<std::string, Values> of_key = {
       {"body.scale", {{"geo", "\"hand.stl\""}, {"size_m", ""}, {"cells", ""}, {"voxels", "100"}}},
       {"body.voxels", voxels},
@@ -37,6 +39,12 @@ Values beside(const std::string& table, const std::string& key) {
       {"material.shear_modulus_Pa", no_young},
       {"material.bulk_modulus_Pa", no_young},
       {"material.lame_lambda_Pa", no_young},
+      {"region.box_m", no_volume},
+      {"region.near", no_volume},
+      {"region.beyond", no_volume},
+      {"region.shear_modulus_Pa", no_young},
+      {"region.bulk_modulus_Pa", no_young},
+      {"region.lame_lambda_Pa", no_young},
       {"compare.exact", {{"models", "[]"}}},
       {"mass.at_m", {{"on", ""}}},
       {"input.with", {{"of", ""}, {"u", ""}}},
@@ -79,8 +87,8 @@ std::string heading_of(const std::string& table) {
       {"dynamics.plane", "[dynamics]\nduration_s = 10\n[dynamics.plane]\n"}};
   if (const auto part = parts.find(table); part != parts.end()) return part->second;
   if (table.starts_with("load.")) return "[[load]]\n";
-  const std::set<std::string> several = {"patch",     "mass",     "probe", "expect",
-                                         "published", "external", "input", "measured"};
+  const std::set<std::string> several = {"patch",    "mass",  "probe",    "expect", "published",
+                                         "external", "input", "measured", "region"};
   return several.contains(table) ? "[[" + table + "]]\n" : "[" + table + "]\n";
 }
 
@@ -119,8 +127,8 @@ std::string case_with(const KeyTable& table, const Key& key, const std::string& 
   add("material", "[material]\nyoungs_modulus_Pa = 1e6\npoisson_ratio = 0.25\ndensity_kg_m3 = 1000\n");
   text += "[[load]]\non = \"y_min\"\ndisplacement_m = [0, 0, 0]\n";
   if (name == "line") text += "[[load]]\nforce_N = [0, 0, -1]\nat_m = [0.03, 0.005, 0.005]\n";
-  if (exact) text += "[reference]\nelements = [\"q2\"]\n";
-  if (name == "load.body_force_of") text += "[compare]\nmodels = []\n";
+  if (exact || name == "region") text += "[reference]\nelements = [\"q2\"]\n";
+  if (name == "load.body_force_of" || name == "region") text += "[compare]\nmodels = []\n";
   if (in_time) text += "[[probe]]\nname = \"tip\"\nat_m = [0, 0, 0]\n[dynamics]\nduration_s = 1\n";
   const auto [before, after] = around_measured(name, key.name);
   if (!name.empty()) text += before + heading_of(name) + table_with(table, key, value) + after;

@@ -1,0 +1,125 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "problem/case_file/experiment_parts.h"
+#include "problem/moduli.h"
+
+namespace springproof {
+namespace {
+
+Range range_of(const ModulusName& modulus) {
+  if (modulus.member == &Moduli::poisson_ratio) return {"-1 < poisson_ratio < 0.5", -1, 0.5};
+  return modulus.member == &Moduli::lame_lambda ? any_number : positive_number;
+}
+
+/// The one thing that says where a region lies.
+RegionPlace read_place(const TomlTable& table) {
+  constexpr const char* one = "one of volume, box_m, near, beyond";
+  std::vector<RegionPlace> places;
+  if (const auto volume = table.find("volume")) {
+    const toml::value<std::int64_t>* number = volume->node->as_integer();
+    places.emplace_back(number ? std::to_string(number->get()) : as_text(*volume));
+  }
+  if (const auto box = table.find("box_m")) places.emplace_back(read_box(*box));
+  if (const auto near = table.find("near")) places.emplace_back(read_near(*near));
+  if (const auto beyond = table.find("beyond")) places.emplace_back(read_beyond(*beyond));
+  if (places.empty()) refuse(table.value(), "does not say where it lies", one);
+  if (places.size() > 1) refuse(table.value(), "says twice where it lies", one);
+  return places.front();
+}
+
+MaterialRegion read_region(const TomlValue& value, double density) {
+  const TomlTable table(value, keys_of("region"));
+  for (const ModulusName& modulus : modulus_names)
+    if (const auto given = table.find(modulus.key); given && given->node->is_array())
+      refuse(*given, "is a list", "one number; lists are for [material]");
+  return {as_text(table.at("name")), read_moduli(table, density).front(), location_of(value), read_place(table)};
+}
+
+/// What of a case is computed of one material alone, and what it may be instead; empty: nothing.
+std::optional<std::pair<std::string, SourceLocation>> of_one_material(const Experiment& e) {
+  if (!e.models.empty() && !e.body.is_voxels())
+    return {
+        {fmt::format("compare.models: {} on a block is of one material (allowed: voxels or voxel_edge_m in [body]; or "
+                     "models = [], with elements in [reference])",
+                     e.models.front().label),
+         e.models.front().where}};
+  const SourceLocation& region = e.regions.front().where;
+  const auto says = [&](const char* what, const char* allowed) {
+    return std::pair{fmt::format("region: '{}': {} (allowed: {})", e.regions.front().name, what, allowed), region};
+  };
+  if (e.dynamics)
+    return {{"dynamics: bodies of several materials are not moved (allowed: equilibria)", e.dynamics->where}};
+  if (e.parts) return says("the parts of errors are of one material", "no parts in [compare]");
+  if (e.fracture) return says("drying bodies are of one material", "no [fracture]");
+  if (e.kinematics != "linear") return says("large strain is of one material", "kinematics = \"linear\"");
+  if (e.line || !e.exact.empty()) return says("exact fields are of one material", "no [line] and no exact");
+  for (const Load& load : e.loads)
+    if (std::holds_alternative<FieldBodyForce>(load) || std::holds_alternative<PrescribedField>(load))
+      return says("exact fields are of one material", "no load by a field");
+  return {};
+}
+
+}  // namespace
+
+std::vector<IsotropicMaterial> read_moduli(const TomlTable& table, double density) {
+  const TomlValue& value = table.value();
+  if (const auto given = table.find("density_kg_m3")) density = as_number(*given, positive_number);
+  std::vector<std::string> names;
+  std::vector<Moduli> solids(1);
+  for (const ModulusName& modulus : modulus_names) {
+    const auto given = table.find(modulus.key);
+    if (!given) continue;
+    names.emplace_back(modulus.key);
+    const auto items = one_or_several(*given);
+    if (solids.size() == 1) solids.resize(items.size(), solids.front());
+    if (items.size() != 1 && items.size() != solids.size())
+      refuse(*given, fmt::format("is a list of {}", items.size()),
+             fmt::format("a list of {}, as above", solids.size()));
+    for (std::size_t i = 0; i < solids.size(); ++i)
+      solids[i].*modulus.member = as_number(items[items.size() == 1 ? 0 : i], range_of(modulus));
+  }
+  if (names.size() != 2)
+    refuse(value,
+           fmt::format("has {} elastic moduli{}{}", names.size(), names.empty() ? "" : ": ", fmt::join(names, ", ")),
+           "exactly two of youngs_modulus_Pa, poisson_ratio, shear_modulus_Pa, bulk_modulus_Pa, lame_lambda_Pa");
+  std::vector<IsotropicMaterial> materials;
+  for (const Moduli& given : solids) try {
+      materials.push_back(material_from(given, density));
+    } catch (const std::invalid_argument& error) {
+      throw InputError(location_of(value), fmt::format("{}: {}", value.key, error.what()));
+    }
+  return materials;
+}
+
+std::vector<MaterialRegion> read_regions(const TomlTable& document, const Experiment& experiment) {
+  constexpr std::size_t most = 255;  // numbers of Mesh::materials
+  std::vector<MaterialRegion> regions;
+  for (const TomlValue& value : document.tables("region")) {
+    regions.push_back(read_region(value, experiment.materials.front().density));
+    for (std::size_t i = 0; i + 1 < regions.size(); ++i)
+      if (regions[i].name == regions.back().name)
+        refuse(TomlTable(value, keys_of("region")).at("name"),
+               fmt::format("'{}' is the name of another region", regions[i].name), "a name of its own");
+    if (regions.size() > most) refuse(value, fmt::format("is number {}", regions.size()), "up to 255 regions");
+  }
+  return regions;
+}
+
+void check_regions(const Experiment& e) {
+  if (e.regions.empty()) return;
+  if (const auto refused = of_one_material(e)) throw InputError(refused->second, refused->first);
+}
+
+void require_one_material(const Experiment& e, const std::string& what) {
+  if (e.regions.empty()) return;
+  const MaterialRegion& first = e.regions.front();
+  throw InputError(first.where,
+                   fmt::format("region: '{}': {} is for bodies of one material (allowed: no [[region]], or "
+                               "springproof compare)",
+                               first.name, what));
+}
+
+}  // namespace springproof

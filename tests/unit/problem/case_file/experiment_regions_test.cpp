@@ -1,0 +1,84 @@
+// [[region]]: what is read, what is refused.
+#include <gtest/gtest.h>
+
+#include "problem/case_file/experiment.h"
+#include "support/case_file.h"
+#include "support/says.h"
+
+namespace springproof::experiment_regions_test {
+namespace {
+
+using test::message_of;
+
+const std::string body = R"([body]
+geo = "hand.stl"
+voxels = 1000
+
+[material]
+youngs_modulus_Pa = 1e4
+poisson_ratio = [0.3, 0.45]
+density_kg_m3 = 1100
+
+[[load]]
+on = "surface"
+displacement_m = [0, 0, 0]
+
+[reference]
+elements = ["p2"]
+)";
+const std::string block = test::small_case;
+const std::string alone = "[compare]\nmodels = []\n";
+const std::string tumour =
+    "[[region]]\nname = \"tumour\"\nvolume = \"t\"\nshear_modulus_Pa = 1e5\nbulk_modulus_Pa = 1e6\n";
+
+TEST(CaseWithRegions, IsRead) {
+  const Experiment e = parse_experiment(
+      body + alone + tumour + "density_kg_m3 = 900\n[[region]]\nname = \"bone\"\nvolume = 3\n" +
+          "youngs_modulus_Pa = 1e7\npoisson_ratio = 0.3\n[[region]]\nname = \"ball\"\nyoungs_modulus_Pa = 1\n"
+          "poisson_ratio = 0\nnear = { point_m = [1, 2, 3], radius_m = 0.1 }\n",
+      "case.toml");
+  ASSERT_EQ(e.regions.size(), 3u);
+  EXPECT_EQ(e.regions[0].name, "tumour");
+  EXPECT_EQ(std::get<std::string>(e.regions[0].place), "t");
+  EXPECT_NEAR(shear_modulus(e.regions[0].material), 1e5, 1e-9);
+  EXPECT_EQ(e.regions[0].material.density, 900);
+  EXPECT_EQ(std::get<std::string>(e.regions[1].place), "3");
+  EXPECT_EQ(e.regions[1].material.density, 1100);  // of [material]
+  EXPECT_EQ(std::get<PatchRule::Near>(e.regions[2].place).radius, 0.1);
+}
+
+TEST(CaseWithRegions, SaysOnceWhereEachLiesAndOfWhat) {
+  const std::string nowhere = "[[region]]\nname = \"a\"\nyoungs_modulus_Pa = 1\npoisson_ratio = 0\n";
+  EXPECT_WORDS(message_of(body + alone + nowhere),
+               "does not say where it lies (allowed: one of volume, box_m, near, beyond");
+  EXPECT_WORDS(message_of(body + alone + tumour + "box_m = [[0, 0, 0], [1, 1, 1]]\n"), "says twice where it lies");
+  EXPECT_WORDS(message_of(body + alone + tumour + "poisson_ratio = 0.3\n"), "region: has 3 elastic moduli");
+  EXPECT_WORDS(message_of(body + alone + tumour + tumour), "'tumour' is the name of another region");
+  EXPECT_WORDS(message_of(body + alone + "[[region]]\nname = \"a\"\nvolume = 1\nyoungs_modulus_Pa = [1, 2]\n" +
+                          "poisson_ratio = 0\n"),
+               "region.youngs_modulus_Pa: is a list (allowed: one number; lists are for [material])");
+}
+
+TEST(CaseWithRegions, IsRefusedWhereOneMaterialIsKnown) {
+  EXPECT_WORDS(message_of(block + tumour), "hybmss on a block is of one material");
+  EXPECT_WORDS(message_of(body + "[compare]\nmodels = [\"hybmss_avg\"]\nparts = true\n" + tumour),
+               "the parts of errors");
+  EXPECT_WORDS(message_of("kinematics = \"hencky\"\n" + body + alone + tumour), "large strain is of one material");
+  EXPECT_WORDS(message_of("kinematics = \"hencky\"\n" + body + alone + tumour + "[dynamics]\nduration_s = 1\n"),
+               "bodies of several materials are not moved");
+  const Experiment e = parse_experiment(body + alone + tumour, "case.toml");
+  try {
+    require_one_material(e, "advise");
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_WORDS(error.what(), "region: 'tumour': advise is for bodies of one material");
+  }
+}
+
+TEST(CaseWithRegions, IsHintedAt) {
+  EXPECT_WORDS(message_of(body + "[[regions]]\nname = \"a\"\n"),
+               "; [[region]] is a part of the body of another material");
+}
+
+}  // namespace
+}  // namespace springproof::experiment_regions_test
