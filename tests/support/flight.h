@@ -62,9 +62,9 @@ inline Flight fly(const MassSpringModel& model, double density, const FlightPlan
     return 0.5 * (v.rowwise().squaredNorm().array() * flight.mass.array()).sum() + energy(model, x) + weight;
   };
   flight.step = checked_time_step(model, density, options);
-  options.after_step = [&](const MotionSample& at) {
-    const NodalVectors& x = at.x;
-    const NodalVectors& v = at.v;
+  options.after_step = [&](const MotionSample& sample) {
+    const NodalVectors& x = sample.x;
+    const NodalVectors& v = sample.v;
     flight.x = x;
     flight.v = v;
     flight.most_energy = std::max(flight.most_energy, energy_of(x, v));

@@ -77,7 +77,8 @@ TEST(FemRequest, TheRestArrives) {
   request.meshes = {std::make_shared<Mesh>(block_mesh(Vec3(1, 1, 1), {1, 1, 1}))};
   request.cost = true;
   request.modes = 7;
-  request.motion = fem::MotionRequest{2, 0.5, {.pulse = 0.25}, true, {1, 2, 3}, {4, 5, 6}, 0.125, true};
+  request.regions = {{"tumour", {2e4, 0.45, 1070}, {}}};
+  request.motion = fem::MotionRequest{2, 0.5, {.pulse = 0.25}, true, {1, 2, 3}, {4, 5, 6}, 0.125, {{{0.25, 3}}}, true};
   const fem::Request arrived = sent(request);
   EXPECT_EQ(to_json(arrived), to_json(request));
   EXPECT_EQ(arrived.geo, request.geo);
@@ -87,11 +88,16 @@ TEST(FemRequest, TheRestArrives) {
   EXPECT_TRUE(arrived.cost);
   EXPECT_EQ(arrived.modes, 7);
   ASSERT_TRUE(arrived.motion);
-  const auto& [duration, damping, course, released, velocity, spin, viscosity, energy_momentum] = *arrived.motion;
+  const auto& [duration, damping, course, released, velocity, spin, viscosity, relaxation, energy_momentum] =
+      *arrived.motion;
   EXPECT_EQ(std::tuple(duration, damping, course.pulse, released, viscosity), std::tuple(2, 0.5, 0.25, true, 0.125));
   EXPECT_EQ(velocity, Vec3(1, 2, 3));
   EXPECT_EQ(spin, Vec3(4, 5, 6));
   EXPECT_TRUE(energy_momentum);
+  ASSERT_EQ(relaxation.branches.size(), 1u);
+  EXPECT_EQ(relaxation.branches[0].time, 3);
+  ASSERT_EQ(arrived.regions.size(), 1u);
+  EXPECT_EQ(arrived.regions[0].material.density, 1070);
 }
 
 TEST(FemRequest, NumbersThatMakeNoMatrixAreRefused) {
