@@ -23,7 +23,8 @@ using Eigen::VectorXd;
 constexpr double newton_tolerance = 1e-7;  // last correction over the largest displacement so far
 constexpr double exact_tolerance = 1e-10;  // of energy-momentum steps
 constexpr int most_corrections = 80;
-constexpr double slow = 0.6;  // ratio of two corrections above which new factors cost less than more corrections
+constexpr double slow = 0.6;     // ratio of two corrections above which new factors cost less than more corrections
+constexpr double sudden = 1e-9;  // [s], as supports that move at the start do
 constexpr double first_load_part = 0.25, smallest_load_part = 1. / 512;
 
 /// The body in motion.
@@ -56,6 +57,7 @@ class MidpointRule {
   bool start() {
     if (!motion_.released) {
       prescribe(support_factor(0), x_.u);
+      cells_.relax({x_.u / 2, x_.p}, {0, 2 / sudden, VectorXd::Zero(x_.u.size())});
       return true;
     }
     double reached = 0, step = law_named(problem_.law) ? first_load_part : 1;

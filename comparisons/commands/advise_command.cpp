@@ -111,6 +111,9 @@ Forecast AdviseCommand::forecast() const {
   if (found.size() > 1) throw InputError(fmt::format("{} is a folder of {} cases; name one", case_, found.size()));
   const Experiment e = read_experiment(found.front());
   require_one_material(e, "advise");
+  if (e.relaxation.acts())
+    throw InputError(e.relaxation_where,
+                     "material.relaxation: advise is for materials that do not relax (allowed: none)");
   if (wish_.cells_across && e.body.is_voxels())
     throw InputError(
         "--cells-across: is for blocks (allowed: a case with size_m and cells; this body is cut out of a "

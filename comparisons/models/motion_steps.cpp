@@ -53,8 +53,9 @@ double wanted_step(const MotionChoice& motion) {
 /// @param own the model's own explicit step [s]
 bool large_steps_pay(const MotionChoice& motion, const MassSpringModel& model, double own,
                      const MotionOptions& options) {
-  const double ratio = LatticeMotion::suits(model, {.viscosity = options.viscosity}) ? worthwhile_ratio_beside_kernels
-                                                                                     : worthwhile_ratio;
+  const double ratio = LatticeMotion::suits(model, {.viscosity = options.viscosity, .relaxation = options.relaxation})
+                           ? worthwhile_ratio_beside_kernels
+                           : worthwhile_ratio;
   return can(model, Capability::energy_momentum) && wanted_step(motion) > ratio * (own / share_of_bound);
 }
 

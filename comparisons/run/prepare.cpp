@@ -137,6 +137,11 @@ void choose_curve(const Experiment& e, ModelParameters& p) {
 void check_own_models(const PreparedCase& prepared) {
   const Experiment& e = prepared.experiment;
   for (std::size_t m = 0; m < prepared.models.size(); ++m)
+    if (prepared.models[m].springs && e.relaxation.acts())
+      throw InputError(e.models[m].where,
+                       "compare.models: the springs of a file do not relax (allowed: models by name; or no "
+                       "[material.relaxation])");
+  for (std::size_t m = 0; m < prepared.models.size(); ++m)
     for (const IsotropicMaterial& material : e.materials) try {
         require_material(prepared.models[m], material);
       } catch (const InputError& error) {

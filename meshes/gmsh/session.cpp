@@ -140,9 +140,15 @@ std::map<int, std::uint8_t> materials_of(const std::filesystem::path& file, cons
   std::map<int, std::uint8_t> materials;
   for (std::size_t r = 0; r < volumes.size(); ++r) {
     if (volumes[r].empty()) continue;
-    const auto named = std::find_if(groups.begin(), groups.end(), [&](const PhysicalVolume& g) {
-      return g.name == volumes[r] || std::to_string(g.number) == volumes[r];
-    });
+    const auto is_named = [&](const PhysicalVolume& g) { return g.name == volumes[r]; };
+    auto named = std::find_if(groups.begin(), groups.end(), is_named);
+    if (named != groups.end() && std::find_if(named + 1, groups.end(), is_named) != groups.end())
+      refuse(file, fmt::format("has several physical volumes '{}', which a [[region]] names (allowed: a name of one; "
+                               "or its number, in the order of the file)",
+                               volumes[r]));
+    if (named == groups.end())
+      named = std::find_if(groups.begin(), groups.end(),
+                           [&](const PhysicalVolume& g) { return std::to_string(g.number) == volumes[r]; });
     if (named == groups.end())
       refuse(file, fmt::format("has no physical volume '{}', which a [[region]] names (allowed: {})", volumes[r],
                                groups.empty() ? "none, as the file has none" : names_of(groups)));

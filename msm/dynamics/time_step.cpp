@@ -350,7 +350,7 @@ void soften_bonds(MassSpringModel& model, double density) {
   }
   for (InterfaceBond& bond : network.bonds) {
     const double cells = std::max(full_cell(bond.corners[0]), full_cell(bond.corners[1]));
-    bond.stiffness *= std::min(1.0, share_of_cells * cells / together.at(bond.corners));
+    bond.stiffness *= std::min(1.0, share_of_cells * cells / together[bond.corners]);
   }
 }
 

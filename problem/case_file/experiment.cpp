@@ -228,6 +228,7 @@ Experiment read_tables(const TomlTable& document, Experiment experiment) {
   read_expectations(document, experiment);
   read_published(document, experiment);
   check_regions(experiment);
+  check_relaxation(experiment);
   return experiment;
 }
 

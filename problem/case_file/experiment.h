@@ -138,7 +138,7 @@ struct Experiment {
   Relaxation relaxation;                     ///< of each of them; their moduli are those at long times
   SourceLocation relaxation_where;           ///< of [material.relaxation]
   double loaded_for = std::numeric_limits<double>::infinity();  ///< of equilibria [s]
-  std::vector<MaterialRegion> regions;       ///< parts of the body that are of other materials
+  std::vector<MaterialRegion> regions;                          ///< parts of the body that are of other materials
   std::vector<Load> loads;
   std::vector<AttachedMass> masses;            ///< beside the body's own
   std::size_t weights = 0;                     ///< loads, the last of `loads`, that are the weight of `masses`

@@ -28,6 +28,8 @@ std::vector<MaterialRegion> read_regions(const TomlTable& document, const Experi
 
 /// @throws InputError at what is not computed of a body with regions; all else must have been read.
 void check_regions(const Experiment& experiment);
+/// @throws InputError at [material.relaxation] beside an exact solution
+void check_relaxation(const Experiment& experiment);
 
 /// A box by two corners.
 PatchRule::Box read_box(const TomlValue& value);

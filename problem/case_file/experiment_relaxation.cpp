@@ -17,7 +17,7 @@ std::vector<RelaxationBranch> read_branches(const TomlValue& value) {
   std::vector<RelaxationBranch> branches;
   for (const TomlValue& item : items) {
     const TomlTable table(item, keys_of("material.relaxation.branches"));
-    const RelaxationBranch branch{as_number(table.at("share"), {"a number > 0, up to 1000", 0, 1000, false, true}),
+    const RelaxationBranch branch{as_number(table.at("share"), {"a number from 1e-6 to 1000", 1e-6, 1000, true, true}),
                                   as_number(table.at("time_s"), positive_number)};
     if (std::any_of(branches.begin(), branches.end(), [&](const auto& other) { return other.time == branch.time; }))
       refuse(table.at("time_s"), fmt::format("{} s is that of another branch", branch.time),
@@ -42,6 +42,17 @@ void read_relaxation(const TomlTable& document, Experiment& experiment) {
   if (experiment.dynamics)
     refuse(*after, "stands beside [dynamics], whose motions end at equilibria of long times", "one of the two");
   experiment.loaded_for = as_number(*after, positive_number);
+}
+
+void check_relaxation(const Experiment& e) {
+  const auto is_exact = [](const Load& load) {
+    const auto* field = std::get_if<PrescribedField>(&load);
+    return field && field->kelvin;
+  };
+  if (!e.relaxation.acts() || !(e.line || std::any_of(e.loads.begin(), e.loads.end(), is_exact))) return;
+  throw InputError(e.relaxation_where,
+                   "material.relaxation: stands beside an exact line or field, which is of a material that does not "
+                   "relax (allowed: one of the two)");
 }
 
 }  // namespace springproof

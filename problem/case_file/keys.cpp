@@ -96,7 +96,7 @@ constexpr Key relaxation_keys[] = {
 };
 
 constexpr Key branch_keys[] = {
-  {"share",  "of the long-time shear modulus", "a number > 0, up to 1000",    required, "0.116"},
+  {"share",  "of the long-time shear modulus", "a number from 1e-6 to 1000",  required, "0.116"},
   {"time_s", "in which its stress falls to 1/e",           "a finite number > 0, its own", required, "0.27"},
 };
 

@@ -56,6 +56,20 @@ TEST(CutInterfaces, BothSidesAreTheSameSurface) {
   EXPECT_NEAR(volume, of_cells, 1e-3 * of_cells);  // slivers that are left out
 }
 
+// A plate between two planes of the lattice that ends within cubes: both of its sides are joined to the cells above and
+// below, so that they would be one cell.
+TEST(CutInterfaces, CellsOfTwoMaterialsOnTheSameCornersAreRefused) {
+  const auto plate = [](const Vec3& x) { return x[0] < 1.5 && x[2] > 1 && x[2] < 2; };
+  const Mesh body = test::with_materials(test::solid_of(block_mesh({3, 3, 3}, {6, 6, 6})), plate);
+  try {
+    cut_body({Vec3::Zero(), 1, {3, 3, 3}}, body);
+    FAIL() << "accepted";
+  } catch (const std::invalid_argument& e) {
+    EXPECT_NE(std::string(e.what()).find("would deform alike"), std::string::npos) << e.what();
+  }
+  EXPECT_NO_THROW(cut_body({Vec3::Zero(), 0.5, {6, 6, 6}}, body));
+}
+
 TEST(CutInterfaces, CellsOfTwoMaterialsInOneCubeShareNoCorner) {
   const CutBody cut = ball_of(8, {0.1, 0.2, -0.05});
   for (const InterfaceInCells& i : cut.interfaces)

@@ -63,6 +63,8 @@ TEST(CaseWithRegions, IsRefusedWhereOneMaterialIsKnown) {
   EXPECT_WORDS(message_of(block + tumour), "hybmss on a block is of one material");
   EXPECT_WORDS(message_of(body + "[compare]\nmodels = [\"hybmss_avg\"]\nparts = true\n" + tumour),
                "the parts of errors");
+  EXPECT_WORDS(message_of(body + "[compare]\nmodels = [\"hybmss_avg\"]\nmeasures = [\"promised_error\"]\n" + tumour),
+               "which promised_error takes for an error");
   EXPECT_WORDS(message_of("kinematics = \"hencky\"\n" + body + alone + tumour), "large strain is of one material");
   EXPECT_WORDS(message_of("kinematics = \"hencky\"\n" + body + alone + tumour + "[dynamics]\nduration_s = 1\n"),
                "bodies of several materials are not moved");

@@ -27,8 +27,9 @@ TEST(RelaxationTable, MistakesAreExplained) {
     EXPECT_NE(said.find(part), std::string::npos) << said;
   };
   const auto message = [](const std::string& branches) { return message_of(with_branches(branches)); };
-  says(message("[{ share = -0.1, time_s = 1 }]"), "share: is -0.1 (allowed: a number > 0, up to 1000)");
+  says(message("[{ share = -0.1, time_s = 1 }]"), "share: is -0.1 (allowed: a number from 1e-6 to 1000)");
   says(message("[{ share = 0, time_s = 1 }]"), "share: is 0");
+  says(message("[{ share = 1e-17, time_s = 1 }]"), "share: is 1e-17");
   says(message("[{ share = 0.1, time_s = 0 }]"), "time_s: is 0 (allowed: a finite number > 0)");
   says(message("[{ share = 0.1, time_s = -1 }]"), "time_s: is -1");
   says(message("[{ share = 0.1 }]"), "time_s: is missing");

@@ -81,6 +81,7 @@ std::string heading_of(const std::string& table) {
       {"patch.beyond", "[[patch]]\nname = \"wrist\"\n[patch.beyond]\n"},
       {"patch.facing", "[[patch]]\nname = \"wrist\"\n[patch.facing]\n"},
       {"patch.near", "[[patch]]\nname = \"wrist\"\n[patch.near]\n"},
+      {"material.relaxation.branches", "[[material.relaxation.branches]]\n"},
       {"external.files", "[[external]]\nname = \"abaqus\"\n[[external.files]]\n"},
       {"measured.values", "[[measured]]\nsource = \"here\"\nlicence = \"none\"\n[[measured.values]]\n"},
       {"load_case", "[[load_case]]\nname = \"52 g\"\n[[load_case]]\n"},
