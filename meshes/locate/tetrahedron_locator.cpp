@@ -13,7 +13,7 @@ namespace {
 
 constexpr double weight_tolerance = 1e-9;  // of the weights: a point this far outside is inside
 
-struct Extent {
+struct CornerBox {
   Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
 
   void add(const Vec3& p) {
@@ -26,8 +26,8 @@ struct Extent {
 
 TetrahedronLocator::TetrahedronLocator(const NodalVectors& X, const std::vector<Tetrahedron>& cells) {
   if (cells.empty()) throw std::invalid_argument("no tetrahedra to look for points in");
-  Extent all;
-  std::vector<Extent> extents(cells.size());
+  CornerBox all;
+  std::vector<CornerBox> extents(cells.size());
   for (std::size_t c = 0; c < cells.size(); ++c) {
     for (const int n : cells[c]) extents[c].add(X.row(n).transpose());
     all.add(extents[c].low);
