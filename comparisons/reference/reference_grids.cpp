@@ -251,7 +251,7 @@ std::map<std::string, double> region_measures(const std::vector<MaterialRegion>&
     const std::string region = "region." + regions[r].name + ".";
     const fem::RegionMeans& m = means[r];
     out[region + "volume_change"] = m.volume_change;
-    out[region + "energy"] = m.energy;
+    if (!std::isnan(m.energy)) out[region + "energy"] = m.energy;
     out[region + "pressure"] = -m.stress.leftCols<3>().mean();
     for (int c = 0; c < 6; ++c) out[region + "mean_stress." + components[c]] = m.stress(0, c);
     for (int d = 0; d < 3; ++d) out[region + "displacement." + "xyz"[d]] = m.displacement[d];

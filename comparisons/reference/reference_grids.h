@@ -67,7 +67,7 @@ Field sampled_field(const Lattice& lattice, const fem::Solution& s);
 /// Every scalar measure of one solution, stresses among them.
 std::map<std::string, double> measures_of(const PreparedCase& prepared, const fem::Solution& s);
 
-/// region.<region>.<quantity>, of the means over each region.
+/// region.<region>.<quantity>, of the means over each region, of finite elements or springs; an energy of NaN is none.
 std::map<std::string, double> region_measures(const std::vector<MaterialRegion>& regions,
                                               const std::vector<fem::RegionMeans>& means);
 

@@ -138,8 +138,9 @@ class TetrahedraOperator {
   }
 
   bool factorise(const MixedVector&) {
-    if (!factors_) factors_ = factored_stiffness(system_);
-    return std::exchange(may_factorise_, false) && factors_;
+    if (factors_) return false;
+    factors_ = factored_stiffness(system_);
+    return static_cast<bool>(factors_);
   }
 
   CellPressures pressures(const MixedVector& x) const {
@@ -158,7 +159,7 @@ class TetrahedraOperator {
   using Lane = Cells::Lane;
 
   const ElasticSystem& system_;
-  bool mixed_, may_factorise_ = true;
+  bool mixed_;
   double mu_, lambda_;
   dealii::DoFHandler<3> pressure_;
   TetrahedraStiffness<double> stiffness_;
