@@ -37,7 +37,8 @@ double dilatation_at(const CellLaw& law, const Matrix3d& h) {
   return law.law ? dilatation(*law.law, to_array(Matrix3d::Identity() + h)) : h.trace();
 }
 
-PointResponse respond_at(const CellLaw& law, const Matrix3d& h, double p) {
+// `derivatives`: whether Q, G and D are wanted of a law of large strain too.
+PointResponse respond_at(const CellLaw& law, const Matrix3d& h, double p, bool derivatives) {
   PointResponse r;
   if (!law.law) {
     const Matrix3d strain = (h + h.transpose()) / 2;
@@ -50,6 +51,10 @@ PointResponse respond_at(const CellLaw& law, const Matrix3d& h, double p) {
     return r;
   }
   r.F = Matrix3d::Identity() + h;
+  if (!derivatives) {
+    r.S = from_voigt(stress(*law.law, law.mu, p, r.F.transpose() * r.F));
+    return r;
+  }
   const LawResponse response = respond(*law.law, law.mu, p, to_array(r.F));
   r.S = from_voigt(response.S);
   r.Q = from_voigt(response.Q);
@@ -195,7 +200,7 @@ CellVector cell_residual(const CellLaw& law, const CellShape& shape, const CellV
   for (int q = 0; q < points; ++q) {
     const double w = shape.weights[q];
     const auto dN = shape.gradients.middleRows<3>(3 * q);
-    const PointResponse response = respond_at(law, state.h[q], state.p[q]);
+    const PointResponse response = respond_at(law, state.h[q], state.p[q], tangent != nullptr);
     const Matrix3d S = tensor(response.S);
     stress.middleRows<3>(3 * q) = w * S * response.F.transpose();
     if (law.form == Form::mixed)
