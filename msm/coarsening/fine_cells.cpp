@@ -75,24 +75,41 @@ std::vector<double> shares_of_materials(const FineCells& fine, int cell, std::si
   return shares;
 }
 
+namespace {
+
+/// Between the arithmetic and the geometric mean of moduli.
+class MeanModulus {
+ public:
+  void add(double share, double modulus) {
+    sum_ += share * modulus;
+    logs_ += share * std::log(modulus);
+  }
+  double value() const { return std::sqrt(sum_ * std::exp(logs_)); }
+
+ private:
+  double sum_ = 0, logs_ = 0;
+};
+
+}  // namespace
+
 AveragedSprings mean_springs(const FineCells& fine, int cell, const AveragedSprings& law) {
   if (law.regions.empty()) return law;
   const std::vector<double> shares = shares_of_materials(fine, cell, law.regions.size() + 1);
   AveragedSprings mean = law;
   mean.regions.clear();
   mean.hourglass = {0, 0, 0, 0, 0};
-  double log_G = 0, log_K = 0;
+  MeanModulus G, K;
   for (std::size_t m = 0; m < shares.size(); ++m) {
     const AveragedSprings& of = law.in(static_cast<int>(m));
-    log_G += shares[m] * std::log(of.shear_modulus);
-    log_K += shares[m] * std::log(of.lame_lambda + 2 * of.shear_modulus / 3);
+    G.add(shares[m], of.shear_modulus);
+    K.add(shares[m], of.lame_lambda + 2 * of.shear_modulus / 3);
     for (double HourglassStiffness::*const mode :
          {&HourglassStiffness::bending, &HourglassStiffness::coupling, &HourglassStiffness::torsion,
           &HourglassStiffness::twist, &HourglassStiffness::warping})
       mean.hourglass.*mode += shares[m] * of.hourglass.*mode;
   }
-  mean.shear_modulus = std::exp(log_G);
-  mean.lame_lambda = std::exp(log_K) - 2 * mean.shear_modulus / 3;
+  mean.shear_modulus = G.value();
+  mean.lame_lambda = K.value() - 2 * G.value() / 3;
   return mean;
 }
 

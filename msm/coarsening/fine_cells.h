@@ -41,8 +41,9 @@ Eigen::SparseMatrix<double, Eigen::RowMajor> prolongation(const CutBody& coarse,
 /// @return share of each in its volume
 std::vector<double> shares_of_materials(const FineCells& fine, int cell, std::size_t materials);
 
-/// Springs in place of the materials in a coarse cell, by the geometric mean of their moduli over its volume: what a
-/// stiff part does depends on how it is joined to the next cell, and the arithmetic mean would say that it is.
+/// Springs in place of the materials in a coarse cell.  What a stiff part does depends on how it is joined to the next
+/// cell: their moduli are the geometric mean of the arithmetic mean over the cell, which says that it is, and of the
+/// geometric one.
 /// @param fine cells of the body
 /// @param cell of the coarse lattice
 /// @param law of the materials

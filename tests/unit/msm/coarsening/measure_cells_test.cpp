@@ -214,7 +214,7 @@ TEST(CellPatches, RigidMotionsOfSeveralMaterialsHaveNoStress) {
 TEST(MeasuredCells, OfABodyWithStiffBallsMoveAsTheirBondedFineLattice) {
   const BlockWithBalls& of = block_with_balls();
   const MeasuredBody measured = measure_cells({of.coarse, of.fine, with_region(100)}, {.threads = 2});
-  EXPECT_GE(measured.error_of_averaged, 0.1);
+  EXPECT_GE(measured.error_of_averaged, 0.2);
   EXPECT_LE(measured.error, 0.4 * measured.error_of_averaged);
 }
 

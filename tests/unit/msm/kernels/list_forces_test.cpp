@@ -91,7 +91,10 @@ void plain_steps(const MassSpringModel& model, const Eigen::VectorXd& mass, cons
   v = NodalVectors::Zero(x.rows(), 3);
   Eigen::VectorXd J;
   for (int step = 0; step < steps; ++step) {
-    const BoundaryConditions bc = path(o.course.ramp > 0 ? std::min(1.0, step * dt / o.course.ramp) : 1.0);
+    const auto at = [&](int steps_made) {
+      return path(o.course.ramp > 0 ? std::min(1.0, steps_made * dt / o.course.ramp) : 1.0);
+    };
+    const BoundaryConditions bc = at(step), next = at(step + 1);
     if (step == 0)
       for (Eigen::Index i = 0; i < x.size(); ++i)
         if (bc.fixed[i]) x.data()[i] += bc.prescribed.data()[i];
@@ -105,7 +108,7 @@ void plain_steps(const MassSpringModel& model, const Eigen::VectorXd& mass, cons
     }
     for (Eigen::Index i = 0; i < x.size(); ++i)
       if (bc.fixed[i]) {
-        x.data()[i] = model.network.X.data()[i] + bc.prescribed.data()[i];
+        x.data()[i] = model.network.X.data()[i] + next.prescribed.data()[i];
       } else {
         v.data()[i] = (v.data()[i] + dt * (f.data()[i] + bc.external.data()[i]) / mass[i / 3]) / (1 + dt * o.damping);
         x.data()[i] += dt * v.data()[i];
