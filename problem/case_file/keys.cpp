@@ -42,6 +42,7 @@ constexpr Key file_keys[] = {
   {"measured",   "what was measured of the body",                   "tables headed [[measured]]",                  "none", ""},
   {"load_case",  "loads under which it was measured",               "tables headed [[load_case]]",                 "the case as written", ""},
   {"input",      "inputs that are uncertain",                       "tables headed [[input]]",                     "none", ""},
+  {"identify",   "what measured values tell",                       "tables headed [[identify]]",                  "none", ""},
 };
 
 constexpr Key body_keys[] = {
@@ -267,19 +268,29 @@ constexpr Key published_keys[] = {
 constexpr Key measured_keys[] = {
   {"source",   "where the values are from",                      "a string",                                                  required, "\"our laboratory, 3 May 2026\""},
   {"licence",  "under which they may be used",                   "a string",                                                  required, "\"CC BY 4.0\""},
-  {"values",   "the values",                                     "a list of { name, quantity, value, u }",                    required, "[{ name = \"sag\", quantity = \"displacement.tip.z\", value = -0.0108, u = 3e-4 }]"},
+  {"values",   "the values",                                     "a list of { name, quantity, value, u }",                    "histories", "[{ name = \"sag\", quantity = \"displacement.tip.z\", value = -0.0108, u = 3e-4 }]"},
+  {"histories", "values in time, after which each is an equilibrium", "a list of { name, quantity, file }",                       "none", ""},
   {"left_out", "what was measured too, and is not compared",     "a string",                                                  "none",   "\"creep\""},
 };
 
 constexpr Key measured_value_keys[] = {
   {"name",      "of its row, measured.NAME",                             "a name",                                    required, "\"sag\""},
   {"quantity",  "what was measured: a name of results.csv",                       "the name of a row",                         required, "\"displacement.tip.z\""},
-  {"value",     "in its unit",                                                    "a finite number",                           required, "-0.0108"},
-  {"u",         "its standard uncertainty",                                       above_0,                                     required, "3e-4"},
+  {"value",     "in its unit",                                                    "a finite number",                           "not measured yet", "-0.0108"},
+  {"u",         "its standard uncertainty",                                       above_0,                                     "with `value`", "3e-4"},
   {"arm_m",     "of a mean_displacement: from the middle of the patch to the marker", a_vector,       "0",      "[0, 0, 0.007]"},
   {"load_case", "under which loads",                                              "the name of a [[load_case]]",               "the first", "\"52 g\""},
   {"minus",     "whose value is subtracted",                                      "the name of a [[load_case]]",               "none",   "\"own weight\""},
   {"use",       "fit: an input was fitted to it",                                 "fit, predict",                              "predict", "\"fit\""},
+};
+
+constexpr Key measured_history_keys[] = {
+  {"name",      "of its rows, measured.NAME, TIME s",  "a name",                       required,    "\"creep\""},
+  {"quantity",  "as of a value",                       "the name of a row",            required,    "\"displacement.tip.z\""},
+  {"file",      "its columns are time_s, value_m and u_m, in the unit of the quantity", "a name of a file, .csv", required, "\"creep.csv\""},
+  {"arm_m",     "as of a value",                       a_vector,                       "0",         "[0, 0, 0.007]"},
+  {"load_case", "under which loads",                   "the name of a [[load_case]]",  "the first", "\"52 g\""},
+  {"from_end",  "the last sample is subtracted",       a_flag,                         "false",     "true"},
 };
 
 constexpr Key load_case_keys[] = {
@@ -293,6 +304,20 @@ constexpr Key input_keys[] = {
   {"u",      "its standard uncertainty, up or down",                 "a finite number",                             "with `of`",      "3e-4"},
   {"with",   "instead: a choice that is as good",                    "keys of the case with other values",          "none",           "{ kinematics = \"neo_hooke\" }"},
   {"fitted", "it was fitted to the value with use = \"fit\"",        a_flag,                                        "false",          "true"},
+};
+
+constexpr Key identify_keys[] = {
+  {"name",       "its name",                       "a name",                                required,                    "\"modulus\""},
+  {"parameters", "what is sought",                 "a list of { of, start, bounds }",       required,                    "[{ of = \"material.youngs_modulus_Pa\" }]"},
+  {"fit",        "values that tell it; the others are predicted", "a list of names of measured values", "those with use = \"fit\"", "[\"sag\"]"},
+  {"model",      "by which",                       "a model of the case, or fem_q1, fem_q2, fem_p1, fem_p2", "the first", "\"fem_p1\""},
+  {"cells",      "of its lattices",                "a list of [nx, ny, nz]",                "those of the case",         "[[20, 6, 6]]"},
+};
+
+constexpr Key identify_parameter_keys[] = {
+  {"of",     "the number, or several that are one", "a key as written here, material.youngs_modulus_Pa, or a list of such", required, "\"material.youngs_modulus_Pa\""},
+  {"start",  "from where it is sought",             "a finite number",                                     "as written",     "1e5"},
+  {"bounds", "between which",                       "two numbers, the lower first",                        "of a material: wide ones", "[1e4, 1e7]"},
 };
 
 constexpr KeyTable tables[] = {
@@ -326,8 +351,11 @@ constexpr KeyTable tables[] = {
   {"published",                  "[[published]]",                    "",                                                            published_keys},
   {"measured",                   "[[measured]]",                     "Values of the body itself, with standard uncertainties; the first model is judged by them (`measured.NAME` = \\|E\\|/u_val).", measured_keys},
   {"measured.values",            "",                                 "",                                                            measured_value_keys},
+  {"measured.histories",         "",                                 "",                                                            measured_history_keys},
   {"load_case",                  "[[load_case]]",                    "",                                                            load_case_keys},
   {"input",                      "[[input]]",                        "The first model runs once with each in every load case, on its coarsest lattice.", input_keys},
+  {"identify",                   "[[identify]]",                     "For `springproof identify`.",                                 identify_keys},
+  {"identify.parameters",        "",                                 "",                                                            identify_parameter_keys},
   {"external",                   "[[external]]",                     "Displacements by any program ([engines](engines.md#any-program-beside-the-models)).", external_keys},
   {"external.files",             "",                                 "",                                                            external_file_keys},
   {"dynamics",                   "[dynamics]",                       "Under any kinematics but \"linear\" ([motion](motion.md)). Each model is computed twice: its equilibrium, and its state after `duration_s`, labelled `NAME in motion`.",  dynamics_keys},
