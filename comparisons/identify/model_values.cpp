@@ -81,7 +81,9 @@ VariedRun ModelValues::made(const Experiment& changed, const std::string& load_c
   VariedRun out{load_case, input, {}, ""};
   Part part;
   try {
-    part = run_part(prepare(changed), 0, {});
+    PreparedCase prepared = prepare(changed);
+    if (is_element(sought_.model)) prepared.models.clear();  // the elements alone
+    part = run_part(prepared, 0, {});
   } catch (const InputError& refused) {
     out.message = refused.what();
   }
