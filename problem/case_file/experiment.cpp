@@ -8,7 +8,6 @@
 
 #include "problem/body_size.h"
 #include "problem/case_file/experiment_parts.h"
-#include "problem/case_file/identification.h"
 #include "problem/files/named_files.h"
 #include "problem/large_strain.h"
 #include "problem/system/nearest_name.h"
@@ -228,7 +227,7 @@ Experiment read_tables(const TomlTable& document, Experiment experiment) {
   read_measured(document, experiment);
   read_expectations(document, experiment);
   read_published(document, experiment);
-  if (document.find("identify")) identifications(experiment);
+  check_identifications(experiment);
   check_regions(experiment);
   check_relaxation(experiment);
   return experiment;

@@ -156,6 +156,8 @@ Identification read_identification(const TomlValue& value, const Experiment& e) 
 
 }  // namespace
 
+void check_identifications(const Experiment& experiment) { identifications(experiment); }
+
 std::vector<Identification> identifications(const Experiment& e) {
   const std::string file = e.file.string();
   const toml::table document = toml::parse(e.text, file);
