@@ -61,11 +61,12 @@ class MotionUnderLoads {
         dt_(options.time_step.value()),
         motion_(make_motion(model, density, options)),
         of_supports_(model.network, options),
-        ahead_(options.integrator == Integrator::explicit_euler ? 0 : 1),
+        explicit_(options.integrator == Integrator::explicit_euler),
         changing_(options.course.settled() > 0),
         bc_(load_path(options.course.factor(0))) {
     result_.time_step = dt_;
     motion_->set_conditions(bc_);
+    if (BoundaryConditions start = bc_; explicit_) of_supports_.add(start);
     if (options.start.size() > 0 || options.velocity.size() > 0) {
       const NodalVectors x = options.start.size() > 0 ? options.start : model.network.X;
       motion_->set_state(x, velocity_before(model, density, x, bc_, options));
@@ -89,10 +90,12 @@ class MotionUnderLoads {
   void set_conditions() {
     result_.time = result_.steps * dt_;
     if (!changing_) return;
-    const double time = static_cast<double>(result_.steps + ahead_) * dt_;
-    bc_ = load_path_(options_.course.factor(time));
-    of_supports_.add(bc_);
-    motion_->set_conditions(bc_);
+    const double end = static_cast<double>(result_.steps + 1) * dt_, time = explicit_ ? end - dt_ : end;
+    BoundaryConditions at_end = load_path_(options_.course.factor(end)), of_step = at_end;
+    if (explicit_) of_step.external = bc_.external;  // of the positions that its forces are taken at
+    of_supports_.add(of_step);
+    motion_->set_conditions(of_step);
+    bc_ = std::move(at_end);
     changing_ = time < options_.course.settled() + (of_supports_.acts() ? 2 * dt_ : 0);  // two steps, until they rest
   }
 
@@ -117,7 +120,7 @@ class MotionUnderLoads {
 
   /// Contact with the plane at the end of a step.
   void touch() {
-    if (ahead_ == 0) {
+    if (explicit_) {
       NodalVectors x = motion_->positions(), v = motion_->velocities();
       if (options_.contact->correct(dt_, options_.damping, bc_.fixed, x, v)) motion_->set_state(x, v);
     }
@@ -167,10 +170,9 @@ class MotionUnderLoads {
   double dt_;  ///< [s]
   std::unique_ptr<Motion> motion_;
   SupportInertia of_supports_;
-  long ahead_;  ///< steps: the explicit method takes loads and supports of the beginning of a step, implicit ones those
-                ///< of its end
+  bool explicit_;  ///< takes the loads of the beginning of a step; all take the supports of its end
   bool changing_, at_rest_ = false;
-  BoundaryConditions bc_;
+  BoundaryConditions bc_;  ///< at the time of the positions
   DynamicsResult result_;
 };
 

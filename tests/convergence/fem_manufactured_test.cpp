@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "support/fem_block.h"
+#include "support/manufactured.h"
 
 namespace springproof::fem_manufactured_test {
 namespace {
@@ -118,6 +119,49 @@ INSTANTIATE_TEST_SUITE_P(Elements, FemOrder, testing::ValuesIn(order_cases()), [
   return fmt::format("Q{}_{}_{}{:04.0f}", instance.param.degree, instance.param.distorted ? "distorted" : "straight",
                      instance.param.poisson_ratio < 0 ? "minus_" : "", 1e4 * std::abs(instance.param.poisson_ratio));
 });
+
+struct LargeStrainCase {
+  const char* law;
+  int degree;
+};
+
+double large_strain_error(const LargeStrainCase& row, int cells) {
+  fem::GridProblem problem = test::fem_block(Vec3::Ones(), {cells / 2, cells / 2, cells / 2}, 1, row.degree, 0.3);
+  problem.law = row.law;
+  problem.tolerance = 1e-9;
+  for (const std::string& face : test::block_faces)
+    problem.loads.push_back(PrescribedDisplacement{face, {0.0, 0.0, 0.0}});
+  const test::ClosedMotion x = test::bulge([](double) { return 1; });
+  const test::PiolaStress P =
+      std::string(row.law) == "hencky" ? test::hencky(problem.material) : test::neo_hookean(problem.material);
+  problem.body_force = [&](const Vec3& X) { return test::body_force(x, P, 0, X, 0); };
+  problem.points = test::points_inside(Vec3::Ones(), 1000);
+  const fem::Solution solution = fem::solve_grid(problem);
+  EXPECT_TRUE(solution.ok) << solution.message;
+  NodalVectors exact(problem.points.rows(), 3);
+  for (Eigen::Index i = 0; i < exact.rows(); ++i) {
+    const Vec3 X = problem.points.row(i).transpose();
+    exact.row(i) = (x(X, 0) - X).transpose();
+  }
+  return (solution.displacement - exact).norm() / exact.norm();
+}
+
+class FemOrderAtLargeStrain : public testing::TestWithParam<LargeStrainCase> {};
+
+TEST_P(FemOrderAtLargeStrain, IsOneMoreThanTheDegree) {
+  const int fine = GetParam().degree == 1 ? 16 : 8;
+  const double coarse_error = large_strain_error(GetParam(), fine / 2),
+               fine_error = large_strain_error(GetParam(), fine);
+  RecordProperty("errors", fmt::format("{:.2e} {:.2e}", coarse_error, fine_error));
+  EXPECT_GE(std::log2(coarse_error / fine_error), GetParam().degree + 1 - 0.2) << coarse_error << " -> " << fine_error;
+}
+
+INSTANTIATE_TEST_SUITE_P(Laws, FemOrderAtLargeStrain,
+                         testing::Values(LargeStrainCase{"hencky", 1}, LargeStrainCase{"hencky", 2},
+                                         LargeStrainCase{"neo_hooke", 1}, LargeStrainCase{"neo_hooke", 2}),
+                         [](const auto& instance) {
+                           return fmt::format("{}_Q{}", instance.param.law, instance.param.degree);
+                         });
 
 }  // namespace
 }  // namespace springproof::fem_manufactured_test
