@@ -18,8 +18,10 @@ struct MeasuredValue {
                             ///< with the patch [m]
   std::size_t of = 0;       ///< number of its load case
   std::optional<std::size_t> minus = {};  ///< of the load case whose value is subtracted
-  double value = 0, u = 0;                ///< with its standard uncertainty, in the unit of the quantity
-  bool fitted = false;                    ///< an input was fitted to it: it is no prediction
+  double value = 0, u = 0;   ///< with its standard uncertainty, in the unit of the quantity; NaN: not measured yet
+  bool fitted = false;       ///< an input was fitted to it: it is no prediction
+  std::string history = {};  ///< that it is a sample of; empty: none
+  double time = 0;           ///< of the sample [s]
   std::string source = {}, licence = {};
   SourceLocation where = {};  ///< of its quantity
 };
@@ -36,10 +38,12 @@ struct UncertainInput {
   SourceLocation where;
 };
 
-/// The case under other loads; the first is the case as written.
+/// The case under other loads, or after another time under them; the first is the case as written.
 struct LoadCase {
   std::string name;
   SourceLocation where;
+  std::size_t table = 0;                  ///< number of its [[load_case]]
+  std::optional<double> loaded_for = {};  ///< instead of the time of the case [s]
 };
 
 }  // namespace springproof

@@ -16,6 +16,7 @@
 #include "comparisons/commands/diff_command.h"
 #include "comparisons/commands/export/export_command.h"
 #include "comparisons/commands/frequencies_command.h"
+#include "comparisons/commands/identify_command.h"
 #include "comparisons/commands/material/homogenise_command.h"
 #include "comparisons/commands/material/material_command.h"
 #include "comparisons/commands/new_command.h"
@@ -67,6 +68,8 @@ constexpr Subcommand subcommands[] = {
      made<CrossCheckCommand>, Reads::bodies},
     {"frequencies", "Natural frequencies and modes of a case's models beside the finite element reference's",
      made<FrequenciesCommand>, Reads::bodies},
+    {"identify", "Numbers of a case, such as moduli and densities, from what was measured; what it does not tell",
+     made<IdentifyCommand>, Reads::bodies},
     {"pictures", "The figures and bodies of a report as PNG files, without a display", made<PicturesCommand>},
     {"reproduce",
      "The figures and tables of a paper, computed and drawn anew, each with a verdict: SVG, PDF, CSV, a page",

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "problem/case_file/measures.h"
+
 namespace springproof {
 namespace {
 

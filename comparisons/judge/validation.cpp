@@ -3,13 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 
-#include "comparisons/judge/reference_value.h"
+#include "comparisons/judge/simulated_value.h"
 #include "problem/case_file/measures.h"
 
 namespace springproof {
@@ -17,99 +15,8 @@ namespace {
 
 using Maybe = std::optional<double>;
 
-/// Where a computation was made.
-struct Where {
-  std::string model;
-  Cells cells;
-};
-
-/// The rows of one load case with one of the inputs changed, or none.
-class Rows {
- public:
-  Rows(const CaseResult& result, std::size_t load_case, const std::string& input) : changed_(!input.empty()) {
-    const std::string& name = result.experiment.load_cases[load_case].name;
-    if (load_case == 0 && input.empty()) rows_ = &result.rows;
-    for (const VariedRun& run : result.varied)
-      if (run.load_case == name && run.input == input) rows_ = &run.rows;
-  }
-
-  /// With an input changed there are rows of the first model on one lattice, whose label and cells may be others.
-  Maybe value(const Where& at, const std::string& measure) const {
-    if (rows_)
-      for (const Row& row : *rows_)
-        if (row.measure == measure && (changed_ || (row.model == at.model && row.cells == at.cells))) return row.value;
-    return {};
-  }
-
- private:
-  const bool changed_;
-  const std::vector<Row>* rows_ = nullptr;
-};
-
-/// What the end of an arm moves by beyond the middle of the patch that it turns with, along the axis of the quantity.
-Maybe of_arm(const MeasuredValue& m, const Rows& rows, const Where& at) {
-  const std::string turn = "turn." + patch_of_row(m.quantity);
-  Vec3 vector;
-  for (int d = 0; d < 3; ++d) {
-    const Maybe component = rows.value(at, turn + '.' + "xyz"[d]);
-    if (!component) return {};
-    vector[d] = *component * std::numbers::pi / 180;
-  }
-  if (vector.isZero(0)) return 0;
-  const Vec3 moved = Eigen::AngleAxisd(vector.norm(), vector.normalized()) * m.arm - m.arm;
-  return moved[m.quantity.back() - 'x'];
-}
-
-Maybe in_load_case(const CaseResult& r, const MeasuredValue& m, std::size_t load_case, const std::string& input,
-                   const Where& at) {
-  const Rows rows(r, load_case, input);
-  const Maybe value = rows.value(at, m.quantity);
-  if (!value || m.arm.isZero(0)) return value;
-  const Maybe arm = of_arm(m, rows, at);
-  return arm ? Maybe(*value + *arm) : Maybe();
-}
-
-/// The quantity as it was measured, with one of the inputs changed, or none.
-Maybe simulated(const CaseResult& r, const MeasuredValue& m, const std::string& input, const Where& at) {
-  const Maybe value = in_load_case(r, m, m.of, input, at);
-  if (!value || !m.minus) return value;
-  const Maybe other = in_load_case(r, m, *m.minus, input, at);
-  return other ? Maybe(*value - *other) : Maybe();
-}
-
-bool has_fewer_cells(const Cells& a, const Cells& b) { return cell_count(a) < cell_count(b); }
-
-/// Values on the lattices that have one, coarse to fine.
-struct Sequence {
-  std::vector<Cells> cells;
-  std::vector<double> values;
-};
-
-Sequence sequence_of(const CaseResult& r, const MeasuredValue& m, const std::string& model) {
-  std::vector<Cells> all = r.cells;
-  std::sort(all.begin(), all.end(), has_fewer_cells);
-  Sequence out;
-  for (const Cells& cells : all)
-    if (const Maybe value = simulated(r, m, "", {model, cells})) {
-      out.cells.push_back(cells);
-      out.values.push_back(*value);
-    }
-  return out;
-}
-
-/// The limit of the last two lattices that have a value, or three; empty: of one, or of two that hardly differ.
-std::optional<ReferenceValue> limit_of(const Sequence& s) {
-  const std::size_t n = s.values.size();
-  const auto ratio = [&](std::size_t fine) { return size_ratio(s.cells[fine - 1], s.cells[fine], s.cells.back()); };
-  if (n < 2) return {};
-  if (n > 2) return extrapolate(s.values, solver_noise * std::abs(s.values.back()), {}, {ratio(n - 2), ratio(n - 1)});
-  if (ratio(1) < smallest_ratio) return {};
-  const double step = (s.values[1] - s.values[0]) / (ratio(1) - 1);  // at first order
-  return ReferenceValue{s.values[1] + step, coarse_safety_factor * std::abs(step), {}, ""};
-}
-
 /// Sets S and u_num: half of the uncertainty of a limit, which is about two standard ones.
-void set_limit(const Sequence& s, ValidatedValue& v) {
+void set_limit(const LatticeValues& s, ValidatedValue& v) {
   if (s.values.empty()) return;
   v.simulated = s.values.back();
   const std::optional<ReferenceValue> limit = limit_of(s);
@@ -121,7 +28,8 @@ void set_limit(const Sequence& s, ValidatedValue& v) {
 
 /// Change of a simulated value by an input, on the lattice of fewest cells; empty: one of the two runs has no value.
 Maybe change_by(const CaseResult& r, const MeasuredValue& m, const std::string& input) {
-  const Where at{r.experiment.models.front().label, *std::min_element(r.cells.begin(), r.cells.end(), has_fewer_cells)};
+  const WhereComputed at{r.experiment.models.front().label,
+                         *std::min_element(r.cells.begin(), r.cells.end(), has_fewer_cells)};
   const Maybe before = simulated(r, m, "", at), after = simulated(r, m, input, at);
   return before && after && std::isfinite(*after - *before) ? Maybe(*after - *before) : Maybe();
 }
@@ -187,7 +95,7 @@ void set_inputs(const CaseResult& r, const MeasuredValue& m, const Fit& fit, Val
 }
 
 /// On the finest cells where both are known.
-Maybe share_of_springs(const CaseResult& r, const MeasuredValue& m, const Sequence& model) {
+Maybe share_of_springs(const CaseResult& r, const MeasuredValue& m, const LatticeValues& model) {
   if (r.experiment.elements.empty()) return {};
   for (std::size_t i = model.cells.size(); i-- > 0;)
     if (const Maybe fem = simulated(r, m, "", {"fem_" + r.experiment.elements.front(), model.cells[i]}))
@@ -208,10 +116,12 @@ ValidatedValue simulated_beside(const CaseResult& r, const MeasuredValue& m) {
   v.u_measured = m.u;
   v.source = m.source;
   v.licence = m.licence;
-  const Sequence model = sequence_of(r, m, v.model);
+  v.history = m.history;
+  v.time = m.time;
+  const LatticeValues model = sequence_of(r, m, v.model);
   set_limit(model, v);
   v.springs = share_of_springs(r, m, model);
-  if (v.simulated) v.error = *v.simulated - v.measured;
+  if (v.simulated && std::isfinite(v.measured)) v.error = *v.simulated - v.measured;
   return v;
 }
 
@@ -224,6 +134,11 @@ void judge(const std::string& fault_of_fit, ValidatedValue& v) {
   else if (!fault_of_fit.empty())
     v.not_judged = fault_of_fit;
   if (!v.not_judged.empty()) return;
+  if (!std::isfinite(v.measured)) {
+    v.u_val = std::hypot(*v.u_numerical, *v.u_input);
+    v.not_judged = "not measured yet";
+    return;
+  }
   v.u_val = std::hypot(*v.u_numerical, *v.u_input, v.u_measured);
   const double ratio = std::abs(*v.error) / *v.u_val;
   if (std::isfinite(ratio) && std::isfinite(*v.u_val))
@@ -232,13 +147,16 @@ void judge(const std::string& fault_of_fit, ValidatedValue& v) {
     v.not_judged = "E or u_val is not finite";
 }
 
+/// D, or of what is not measured yet S.
+double base_of(const ValidatedValue& v) { return std::isfinite(v.measured) ? v.measured : v.simulated.value_or(0); }
+
 /// A difference, in % of D: above 0 the simulated value is the larger one.
 std::string signed_percent(const ValidatedValue& v, const Maybe& x) {
-  return x && v.measured != 0 ? fmt::format("{:+.1f}", 100 * *x / v.measured) : "–";
+  return x && base_of(v) != 0 ? fmt::format("{:+.1f}", 100 * *x / base_of(v)) : "–";
 }
 
 std::string percent(const ValidatedValue& v, const Maybe& u) {
-  return u && v.measured != 0 ? fmt::format("{:.1f}", 100 * *u / std::abs(v.measured)) : "–";
+  return u && std::isfinite(*u) && base_of(v) != 0 ? fmt::format("{:.1f}", 100 * *u / std::abs(base_of(v))) : "–";
 }
 
 std::vector<const ValidatedValue*> outside(const CaseResult& r) {
@@ -342,9 +260,9 @@ std::string validation_table(const CaseResult& r) {
     for (const ValidatedValue& v : r.validation)
       if (v.fitted == fitted)
         out += fmt::format(form, v.name, v.simulated ? fmt::format("{:.5g}", *v.simulated) : "–",
-                           fmt::format("{:.5g}", v.measured), v.unit, signed_percent(v, v.error),
-                           percent(v, v.u_numerical), fitted ? "" : percent(v, v.u_input), percent(v, v.u_measured),
-                           fitted ? "" : percent(v, v.u_val),
+                           std::isfinite(v.measured) ? fmt::format("{:.5g}", v.measured) : "awaited", v.unit,
+                           signed_percent(v, v.error), percent(v, v.u_numerical), fitted ? "" : percent(v, v.u_input),
+                           percent(v, v.u_measured), fitted ? "" : percent(v, v.u_val),
                            fitted    ? "fit"
                            : v.ratio ? fmt::format("{:.1f}", *v.ratio)
                                      : "–");

@@ -116,33 +116,35 @@ void relax(const Relaxation& relaxation, const ModeSet& high, const Eigen::Vecto
   }
 }
 
-/// Modes of a material, which may relax.
+/// Modes of a material, which may relax; none where those of a sudden strain have no result.
 /// @param of the modes of a solid
 template <class Modes>
 ModeSet relaxing_modes(const Relaxation& relaxation, const IsotropicMaterial& material, const Eigen::VectorXd& weights,
                        const Modes& of) {
   ModeSet modes = of(material);
-  if (relaxation.acts() && !modes.frequencies.empty())
-    relax(relaxation, of(with_shear(material, relaxation.instantaneous())), weights, modes);
+  if (!relaxation.acts() || modes.frequencies.empty()) return modes;
+  const ModeSet sudden = of(with_shear(material, relaxation.instantaneous()));
+  if (sudden.frequencies.empty()) return sudden;
+  relax(relaxation, sudden, weights, modes);
   return modes;
 }
 
 ReferenceModes reference_modes(const PreparedCase& prepared, const IsotropicMaterial& material, int modes) try {
   ReferenceModes out;
-  const ElementGrids grids{element_of(prepared), solve_each(mode_request(prepared, material, modes + modes_beside))};
-  for (const fem::Solution& s : grids.grids)
-    if (!s.ok) {
-      out.failure = fmt::format("{} cells: {}", cells_text(s.grid.cells, " x "), s.message);
-      return out;
-    }
+  const auto solved_at = [&](const IsotropicMaterial& solid) {
+    std::vector<fem::Solution> all = solve_each(mode_request(prepared, solid, modes + modes_beside));
+    for (const fem::Solution& s : all)
+      if (!s.ok) throw std::runtime_error(fmt::format("{} cells: {}", cells_text(s.grid.cells, " x "), s.message));
+    return all;
+  };
+  const ElementGrids grids{element_of(prepared), solved_at(material)};
   out.form = grids.grids[2].form;
   out.rigid_motions = grids.grids[2].rigid_motions;
   std::vector<ModeSet> of_grids;
   for (const fem::Solution& s : grids.grids) of_grids.push_back(modes_at_nodes(prepared, s));
   const Relaxation& relaxation = prepared.experiment.relaxation;
   if (relaxation.acts()) {
-    const std::vector<fem::Solution> sudden =
-        solve_each(mode_request(prepared, with_shear(material, relaxation.instantaneous()), modes + modes_beside));
+    const std::vector<fem::Solution> sudden = solved_at(with_shear(material, relaxation.instantaneous()));
     for (std::size_t g = 0; g < sudden.size(); ++g)
       relax(relaxation, modes_at_nodes(prepared, sudden[g]), weights_of_nodes(prepared), of_grids[g]);
   }

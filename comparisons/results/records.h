@@ -248,6 +248,8 @@ struct ValidatedValue : RunKey {
   std::optional<double> resolution;  ///< finest lattice - limit
   std::vector<InputShare> inputs;
   std::string source, licence;
+  std::string history;  ///< that it is a sample of; empty: none
+  double time = 0;      ///< of the sample [s]
 };
 
 /// Results of the runs of a case, at one Poisson's ratio or at all of them.

@@ -36,7 +36,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(VariedRun, load_case, input, rows, message)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(InputShare, input, change, alternative)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ValidatedValue, model, poisson_ratio, cells, name, quantity, unit, load_case, fitted,
                                    measured, u_measured, simulated, u_numerical, u_input, error, u_val, ratio,
-                                   not_judged, springs, resolution, inputs, source, licence)
+                                   not_judged, springs, resolution, inputs, source, licence, history, time)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Part, runs, rows, references, pictures, lines, histories, splits, deformations,
                                    cracks, limits, varied)
 

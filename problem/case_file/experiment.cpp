@@ -227,6 +227,7 @@ Experiment read_tables(const TomlTable& document, Experiment experiment) {
   read_measured(document, experiment);
   read_expectations(document, experiment);
   read_published(document, experiment);
+  if (document.find("identify")) check_identifications(experiment);
   check_regions(experiment);
   check_relaxation(experiment);
   return experiment;

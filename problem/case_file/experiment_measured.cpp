@@ -2,8 +2,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "problem/case_file/experiment_parts.h"
+#include "problem/case_file/history_file.h"
 #include "problem/case_file/measures.h"
 #include "problem/case_file/varied.h"
 
@@ -31,7 +34,7 @@ void read_load_cases(const TomlTable& document, Experiment& e) {
     if (e.load_cases.empty() == with.has_value())
       refuse(with.value_or(value), with ? "changes the first load case" : "is the case as written once more",
              "`with` in all but the first, which is the case as written");
-    e.load_cases.push_back({read_own_name(table.at("name"), e.load_cases), location_of(value)});
+    e.load_cases.push_back({read_own_name(table.at("name"), e.load_cases), location_of(value), e.load_cases.size()});
   }
   if (e.load_cases.empty()) e.load_cases.push_back({"as written", {}});
 }
@@ -67,14 +70,11 @@ void check_size(const TomlValue& value, const Experiment& e, const MeasuredValue
            fmt::format("a number in {}", unit_in(value.units, "m").name));
 }
 
-MeasuredValue read_value(const TomlValue& value, const Experiment& e) {
-  const TomlTable table(value, keys_of("measured.values"));
+/// What a value and a history share; value and u are not read.
+MeasuredValue read_quantity(const TomlTable& table, const Experiment& e) {
   MeasuredValue m{.name = read_own_name(table.at("name"), e.measured),
                   .quantity = read_row_name(table.at("quantity"), e),
                   .where = location_of(table.at("quantity"))};
-  m.value = as_number_of(m.quantity, table.at("value"));
-  m.u = as_number_of(m.quantity, table.at("u"), positive_number);
-  check_size(table.at("value"), e, m);
   if (is_distance(m.quantity) || is_deviation(m.quantity))
     refuse(table.at("quantity"), fmt::format("'{}' is a difference between computations", m.quantity),
            "a quantity that can be measured");
@@ -87,11 +87,66 @@ MeasuredValue read_value(const TomlValue& value, const Experiment& e) {
       refuse(*arm, "turns with a patch", "beside the quantity mean_displacement.PATCH.x|y|z");
   }
   if (const auto of = table.find("load_case")) m.of = read_load_case(*of, e);
+  return m;
+}
+
+MeasuredValue read_value(const TomlValue& value, const Experiment& e) {
+  const TomlTable table(value, keys_of("measured.values"));
+  MeasuredValue m = read_quantity(table, e);
+  const auto number = table.find("value"), u = table.find("u");
+  if (number.has_value() != u.has_value())
+    throw InputError(
+        location_of(value),
+        fmt::format(
+            "measured.values.{} (allowed: a finite number{}; neither value nor u where nothing is measured yet)",
+            number ? "u: is missing" : "value: is missing", number ? " > 0" : ""));
+  m.value = number ? as_number_of(m.quantity, *number) : std::numeric_limits<double>::quiet_NaN();
+  m.u = u ? as_number_of(m.quantity, *u, positive_number) : std::numeric_limits<double>::quiet_NaN();
+  if (number) check_size(*number, e, m);
   if (const auto minus = table.find("minus")) m.minus = read_load_case(*minus, e);
   if (m.minus == m.of) refuse(table.at("minus"), "is the same load case", "another one");
   if (const auto use = table.find("use")) m.fitted = as_choice(*use, {"fit", "predict"}) == "fit";
-  if (m.fitted && m.value == 0) refuse(table.at("value"), "is 0, to which nothing can be fitted", "another value");
+  if (m.fitted && !(std::abs(m.value) > 0))
+    refuse(number.value_or(value), number ? "is 0, to which nothing can be fitted" : "is not measured yet",
+           "another value");
   return m;
+}
+
+/// The load case after another time under its loads, which may be there already.
+std::size_t load_case_after(double time, const LoadCase& of, Experiment& e) {
+  const std::string name = fmt::format("{} after {:g} s", of.name, time);
+  for (std::size_t c = 0; c < e.load_cases.size(); ++c)
+    if (e.load_cases[c].name == name) return c;
+  e.load_cases.push_back({name, of.where, of.table, time});
+  return e.load_cases.size() - 1;
+}
+
+/// The samples of a history as values, each of a load case of its own.
+void read_samples(const TomlValue& value, Experiment& e, const std::string& source, const std::string& licence) {
+  const TomlTable table(value, keys_of("measured.histories"));
+  if (!e.relaxation.acts() || e.dynamics)
+    refuse(value, "is of a body whose equilibria do not change with time",
+           "beside [material.relaxation], without [dynamics]");
+  const MeasuredValue all = read_quantity(table, e);
+  const LoadCase loads = e.load_cases[all.of];
+  const Named unit = unit_in(e.units, unit_of(all.quantity));
+  const std::vector<HistorySample> samples =
+      read_history(std::filesystem::path(value.file).parent_path() / as_text(table.at("file")), unit.name);
+  const auto from_end = table.find("from_end");
+  const bool subtracted = from_end && as_flag(*from_end);
+  for (const HistorySample& s : samples) {
+    MeasuredValue m = all;
+    m.history = all.name;
+    m.name = fmt::format("{}, {:g} s", all.name, s.time);
+    m.time = s.time;
+    m.of = load_case_after(s.time, loads, e);
+    if (subtracted) m.minus = load_case_after(samples.back().time, loads, e);
+    m.value = unit.in_si * (s.value - (subtracted ? samples.back().value : 0));
+    m.u = unit.in_si * s.u;
+    m.source = source;
+    m.licence = licence;
+    if (m.minus != m.of) e.measured.push_back(m);
+  }
 }
 
 /// One input is fitted to one value, or none to none.
@@ -111,11 +166,17 @@ void read_measured_set(const TomlValue& value, Experiment& e) {
            "models in [compare], and one Poisson's ratio");
   const std::string source = as_text(table.at("source")), licence = as_text(table.at("licence"));
   if (const auto left_out = table.find("left_out")) e.left_out.push_back(as_text(*left_out));
-  for (const TomlValue& item : as_list(table.at("values"), "a list of { name, quantity, value, u }")) {
-    e.measured.push_back(read_value(item, e));
-    e.measured.back().source = source;
-    e.measured.back().licence = licence;
-  }
+  const auto values = table.find("values"), histories = table.find("histories");
+  if (!values && !histories) refuse(value, "has no values", "values, histories, or both");
+  if (values)
+    for (const TomlValue& item : as_list(*values, "a list of { name, quantity, value, u }")) {
+      e.measured.push_back(read_value(item, e));
+      e.measured.back().source = source;
+      e.measured.back().licence = licence;
+    }
+  if (histories)
+    for (const TomlValue& item : as_list(*histories, "a list of { name, quantity, file }"))
+      read_samples(item, e, source, licence);
 }
 
 void add_measure(const char* name, Experiment& e) {

@@ -88,6 +88,10 @@ double as_number_of(const std::string& measure, TomlValue value, const Range& ra
 /// [measured], and [[load_case]] and [[input]] beside it; all but what is expected and printed must have been read.
 void read_measured(const TomlTable& document, Experiment& experiment);
 
+/// @throws InputError at an [[identify]] that seeks what cannot be sought (identification.h); all else must have been
+/// read.
+void check_identifications(const Experiment& experiment);
+
 /// A case file's content, which need not be what the file of `experiment` holds; file and text are those of it.
 /// @throws InputError as read_experiment
 Experiment read_document(const toml::table& document, const Experiment& experiment);

@@ -42,6 +42,7 @@ constexpr Key file_keys[] = {
   {"measured",   "what was measured of the body",                   "tables headed [[measured]]",                  "none", ""},
   {"load_case",  "loads under which it was measured",               "tables headed [[load_case]]",                 "the case as written", ""},
   {"input",      "inputs that are uncertain",                       "tables headed [[input]]",                     "none", ""},
+  {"identify",   "what measured values tell",                       "tables headed [[identify]]",                  "none", ""},
 };
 
 constexpr Key body_keys[] = {
@@ -60,9 +61,9 @@ constexpr Key patch_keys[] = {
   {"name",   "its name, for `on`",                             "a name",                                  required,       "\"wrist\""},
   {"side",   "the plane face on that side of the body, or the outer twentieth of a round side: -x, x, -y, y, -z, z", "left, right, front, back, bottom, top", "no condition", "\"bottom\""},
   {"box_m",  "inside the box of two corners, the lower first", "two corners, [[x, y, z], [x, y, z]]",     "no condition", "[[0, 0, 0], [0.1, 0.1, 0.02]]"},
-  {"beyond", "on one side of a plane",                         "a table",                                 "no condition", "{ point_m = [0, 0, 0.01], normal = [0, 0, -1] }"},
-  {"facing", "whose outward normals are within an angle",      "a table",                                 "no condition", "{ direction = [0, 0, -1], within_deg = 30 }"},
-  {"near",   "the connected surface nearest to a point",       "a table",                                 "no condition", "{ point_m = [0.05, 0.05, 0], radius_m = 0.03 }"},
+  {"beyond", "on one side of a plane",                         "a table",                                 "no condition", ""},
+  {"facing", "whose outward normals are within an angle",      "a table",                                 "no condition", ""},
+  {"near",   "the connected surface nearest to a point",       "a table",                                 "no condition", ""},
 };
 
 constexpr Key beyond_keys[] = {
@@ -87,7 +88,7 @@ constexpr Key material_keys[] = {
   {"bulk_modulus_Pa",   "bulk modulus",           "a finite number > 0, or a list of such",      "two moduli", "1e6"},
   {"lame_lambda_Pa",    "Lame's first parameter", "a finite number, or a list of such",          "two moduli", "4e5"},
   {"density_kg_m3",     "density",                above_0,                                       "1000; required by gravity", "1100"},
-  {"relaxation",        "Maxwell elements beside these moduli", "a table",                                       "none", "{ branches = [{ share = 0.116, time_s = 0.27 }] }"},
+  {"relaxation",        "Maxwell elements beside these moduli", "a table",                                       "none", ""},
 };
 
 constexpr Key relaxation_keys[] = {
@@ -193,7 +194,7 @@ constexpr Key dynamics_keys[] = {
   {"ramp_s",           "loads grow linearly over this time",                      "a finite number >= 0, up to duration_s",        "0, at once", "2"},
   {"pulse_s",          "instead: loads last for this time, as half a sine wave",  "a finite number > 0, up to duration_s",         "none",     "0.01"},
   {"shake_Hz",         "instead: loads and moved supports are a sine wave",       above_0,                                         "none",     "3"},
-  {"plane",            "which the body may fall on; of models alone",             "a table",                                       "none",     "{ point_m = [0, 0, -0.1], normal = [0, 0, 1], friction = 0.3 }"},
+  {"plane",            "which the body may fall on; of models alone",             "a table",                                       "none",     ""},
   {"velocity_m_s",     "of the whole body at the start",                          a_vector,                                        "0",        "[0, 0, -1]"},
   {"spin_rad_s",       "about its centre of mass at the start",                   a_vector,                                        "0",        "[0, 0, 20]"},
   {"equilibrium",      "each model is also solved for its equilibrium",           a_flag,                                          "true",     "false"},
@@ -267,19 +268,29 @@ constexpr Key published_keys[] = {
 constexpr Key measured_keys[] = {
   {"source",   "where the values are from",                      "a string",                                                  required, "\"our laboratory, 3 May 2026\""},
   {"licence",  "under which they may be used",                   "a string",                                                  required, "\"CC BY 4.0\""},
-  {"values",   "the values",                                     "a list of { name, quantity, value, u }",                    required, "[{ name = \"sag\", quantity = \"displacement.tip.z\", value = -0.0108, u = 3e-4 }]"},
-  {"left_out", "what was measured too, and is not compared",     "a string",                                                  "none",   "\"creep\""},
+  {"values",   "the values",                                     "a list of { name, quantity, value, u }",                    "histories", ""},
+  {"histories", "values in time, each of an equilibrium after it; keys of values too", "a list of { name, quantity, file }",                       "none", ""},
+  {"left_out", "measured too, and not compared",     "a string",                                                  "none",   "\"creep\""},
 };
 
 constexpr Key measured_value_keys[] = {
   {"name",      "of its row, measured.NAME",                             "a name",                                    required, "\"sag\""},
   {"quantity",  "what was measured: a name of results.csv",                       "the name of a row",                         required, "\"displacement.tip.z\""},
-  {"value",     "in its unit",                                                    "a finite number",                           required, "-0.0108"},
-  {"u",         "its standard uncertainty",                                       above_0,                                     required, "3e-4"},
+  {"value",     "in its unit",                                                    "a finite number",                           "not measured yet", "-0.0108"},
+  {"u",         "its standard uncertainty",                                       above_0,                                     "with `value`", "3e-4"},
   {"arm_m",     "of a mean_displacement: from the middle of the patch to the marker", a_vector,       "0",      "[0, 0, 0.007]"},
   {"load_case", "under which loads",                                              "the name of a [[load_case]]",               "the first", "\"52 g\""},
   {"minus",     "whose value is subtracted",                                      "the name of a [[load_case]]",               "none",   "\"own weight\""},
   {"use",       "fit: an input was fitted to it",                                 "fit, predict",                              "predict", "\"fit\""},
+};
+
+constexpr Key measured_history_keys[] = {
+  {"name",      "of its row, measured.NAME",           "a name",                       required,    "\"creep\""},
+  {"quantity",  "what was measured: a name of results.csv", "the name of a row",       required,    "\"displacement.tip.z\""},
+  {"file",      "its columns: time_s,value_m,u_m",     "a name of a file, .csv",       required,    "\"creep.csv\""},
+  {"arm_m",     "of a mean_displacement: from the middle of the patch to the marker", a_vector, "0", "[0, 0, 0.007]"},
+  {"load_case", "under which loads",                   "the name of a [[load_case]]",  "the first", "\"52 g\""},
+  {"from_end",  "the last sample is subtracted",       a_flag,                         "false",     "true"},
 };
 
 constexpr Key load_case_keys[] = {
@@ -293,6 +304,20 @@ constexpr Key input_keys[] = {
   {"u",      "its standard uncertainty, up or down",                 "a finite number",                             "with `of`",      "3e-4"},
   {"with",   "instead: a choice that is as good",                    "keys of the case with other values",          "none",           "{ kinematics = \"neo_hooke\" }"},
   {"fitted", "it was fitted to the value with use = \"fit\"",        a_flag,                                        "false",          "true"},
+};
+
+constexpr Key identify_keys[] = {
+  {"name",       "its name",                       "a name",                                required,                    "\"modulus\""},
+  {"parameters", "what is sought",                 "a list of { of, start, bounds }",       required,                    "[{ of = \"material.youngs_modulus_Pa\" }]"},
+  {"fit",        "fitted; all others are predicted", "a list of names of measured values", "those with use = \"fit\"", "[\"sag\"]"},
+  {"model",      "by which",                       "a model of the case, or fem_q1, fem_q2, fem_p1, fem_p2", "the first", "\"fem_p1\""},
+  {"cells",      "of its lattices",                "a list of [nx, ny, nz]",                "those of the case",         "[[20, 6, 6]]"},
+};
+
+constexpr Key identify_parameter_keys[] = {
+  {"of",     "the number, or several that are one", "a key as written here, material.youngs_modulus_Pa, or a list of such", required, "\"material.youngs_modulus_Pa\""},
+  {"start",  "from where it is sought",             "a finite number",                                     "as written",     "1e5"},
+  {"bounds", "between which",                       "two numbers, the lower first",                        "of a material: wide ones", "[1e4, 1e7]"},
 };
 
 constexpr KeyTable tables[] = {
@@ -326,8 +351,11 @@ constexpr KeyTable tables[] = {
   {"published",                  "[[published]]",                    "",                                                            published_keys},
   {"measured",                   "[[measured]]",                     "Values of the body itself, with standard uncertainties; the first model is judged by them (`measured.NAME` = \\|E\\|/u_val).", measured_keys},
   {"measured.values",            "",                                 "",                                                            measured_value_keys},
+  {"measured.histories",         "",                                 "",                                                            measured_history_keys},
   {"load_case",                  "[[load_case]]",                    "",                                                            load_case_keys},
   {"input",                      "[[input]]",                        "The first model runs once with each in every load case, on its coarsest lattice.", input_keys},
+  {"identify",                   "[[identify]]",                     "For `springproof identify`.",                                 identify_keys},
+  {"identify.parameters",        "",                                 "",                                                            identify_parameter_keys},
   {"external",                   "[[external]]",                     "Displacements by any program ([engines](engines.md#any-program-beside-the-models)).", external_keys},
   {"external.files",             "",                                 "",                                                            external_file_keys},
   {"dynamics",                   "[dynamics]",                       "Under any kinematics but \"linear\" ([motion](motion.md)). Each model is computed twice: its equilibrium, and its state after `duration_s`, labelled `NAME in motion`.",  dynamics_keys},
@@ -391,15 +419,25 @@ std::string value_of(const Key& key) {
 }
 
 std::string section_of(std::string_view heading, std::string_view what) {
-  return fmt::format("\n## {}\n\n{}{}| key | what | value | unit | default | example |\n|---|---|---|---|---|---|\n",
-                     heading, what, what.empty() ? "" : "\n\n");
+  return fmt::format("\n## {}\n\n{}{}| key | what | value | default | example |\n|---|---|---|---|---|\n", heading,
+                     what, what.empty() ? "" : "\n\n");
 }
 
 /// `inside`: "plane." of a key of the table plane of [dynamics].
 std::string row_of(const Key& key, std::string_view inside) {
-  return fmt::format("| `{}{}` | {} | {} | {} | {} | {} |\n", inside, key.name, key.what, value_of(key), unit_of(key),
+  return fmt::format("| `{}{}` | {} | {} | {} | {} |\n", inside, key.name, key.what, value_of(key),
                      key.otherwise ? key.otherwise : "required",
                      *key.example ? fmt::format("`{}`", key.example) : "below");
+}
+
+/// Whether a table above it with the same root has the same key.
+bool stands_above(const KeyTable& table, const Key& key) {
+  const auto root = [](std::string_view name) { return name.substr(0, name.find('.')); };
+  for (const KeyTable* above = tables; above != &table; ++above)
+    if (root(above->name) == root(table.name))
+      for (const Key& other : above->keys)
+        if (std::string_view(other.name) == key.name && std::string_view(other.what) == key.what) return true;
+  return false;
 }
 
 }  // namespace
@@ -429,7 +467,7 @@ std::string keys_page() {
       "# Keys of a case file\n\n"
       "Printed by `springproof describe keys`. A case is a file in TOML; the [tutorial](tutorial.md) has a first one. "
       "Any other key, type or number is refused with its line, what is allowed and the nearest key. Numbers are "
-      "finite; x, y, z are numbers.\n";
+      "finite, in the unit that their key ends with; x, y, z are numbers.\n";
   bool loads = false;
   for (const KeyTable& table : tables) {
     const std::string_view name = table.name;
@@ -439,12 +477,13 @@ std::string keys_page() {
                          "One of these kinds; all but the last three act on a patch or a list of patches: "
                          "`on = \"x_min\"`.");
     if (load)
-      page += fmt::format("| *{}* | {} | | | | |\n", table.heading, table.what);
+      page += fmt::format("| *{}* | {} | | | |\n", table.heading, table.what);
     else if (*table.heading)
       page += section_of(table.heading, table.what);
     const std::string inside = *table.heading ? "" : fmt::format("{}.", name.substr(name.find('.') + 1));
     for (const Key& key : table.keys)
-      if (!load || std::string_view(key.name) != on.name) page += row_of(key, inside);
+      if (load ? std::string_view(key.name) != on.name : inside.empty() || !stands_above(table, key))
+        page += row_of(key, inside);
   }
   page +=
       "\n## Units\n\nUnder `units = \"mm\"` keys end as below; files of bodies (but STEP, which states its unit) "

@@ -130,28 +130,46 @@ void check_items(const TomlValue& input, const toml::table& replaced) {
       check_items(item, as_text(item), replaced);
 }
 
+/// Sets numbers that are there.
+void set_numbers(const std::vector<OtherNumber>& numbers, toml::table& document) {
+  for (const OtherNumber& number : numbers)
+    for (const std::string& path : number.of) set(place_of(document, path).value(), number.value);
+}
+
 }  // namespace
+
+std::optional<double> number_of(const Experiment& e, const std::string& path) {
+  toml::table document = toml::parse(e.text, e.file.string());
+  const std::optional<Place> place = place_of(document, path);
+  const toml::node* node = place ? place->node() : nullptr;
+  return node && node->is_number() ? node->value<double>() : std::optional<double>();
+}
 
 Experiment varied(const Experiment& e, const Variation& variation) {
   const std::string file = e.file.string();
   toml::table as_written = toml::parse(e.text, file), document = as_written;
+  set_numbers(variation.numbers, document);
   SourceLocation where;
-  if (variation.load_case > 0) {
-    const TomlValue load_case = table_of(as_written, "load_case", variation.load_case, file);
+  const LoadCase& loads = e.load_cases.at(variation.load_case);
+  if (loads.table > 0) {
+    const TomlValue load_case = table_of(as_written, "load_case", loads.table, file);
     where = location_of(load_case);
     const toml::node* with = load_case.node->as_table()->get("with");
     replace({with, "load_case.with", file}, nullptr, document);
     if (variation.input) check_items(table_of(as_written, "input", *variation.input, file), *with->as_table());
   }
+  if (loads.loaded_for)
+    if (const auto place = place_of(document, "material.relaxation.equilibrium_after_s"))
+      set(*place, *loads.loaded_for);
   if (variation.input) {
     const TomlValue input = table_of(as_written, "input", *variation.input, file);
     where = location_of(input);
     if (const toml::node* with = input.node->as_table()->get("with"))
-      replace({with, "input.with", file}, variation.load_case > 0 ? &as_written : nullptr, document);
+      replace({with, "input.with", file}, loads.table > 0 ? &as_written : nullptr, document);
     else
-      add(input, variation.load_case == 0, document);
+      add(input, loads.table == 0, document);
   }
-  for (const char* name : {"measured", "load_case", "input", "expect", "published"}) document.erase(name);
+  for (const char* name : {"measured", "load_case", "input", "identify", "expect", "published"}) document.erase(name);
   try {
     Experiment changed = read_document(document, e);
     changed.measures = e.measures;

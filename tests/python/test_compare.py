@@ -244,3 +244,21 @@ def test_what_a_function_raises_reaches_the_caller():
         sp.compare("golec_2019", models={"mine": affine})
     with pytest.raises(sp.InputError, match="no such case"):
         sp.compare("golec_2020", models={"mine": affine})
+
+
+def test_identify_returns_what_the_program_writes():
+    case = {
+        **{key: value for key, value in CASE.items() if key != "expect"},
+        "material": {"youngs_modulus_Pa": 2e4, "poisson_ratio": 0.25, "density_kg_m3": 1100},
+        "compare": {"models": ["hybmss_avg"], "measures": ["probe"]},
+        "measured": [{"source": "here", "licence": "none", "values": [{"name": "sag", "quantity": "displacement.tip.z", "value": -0.004, "u": 1e-4}]}],
+        "identify": [{"name": "modulus", "parameters": [{"of": "material.youngs_modulus_Pa"}], "fit": ["sag"]}],
+    }
+    (found,) = sp.identify(case, only="modulus", start=[3e4])
+    E = found["parameters"][0]["value"]
+    bar = sp.Model("hybmss_avg", sp.block((0.2, 0.1, 0.1), (4, 2, 2)), sp.Material(E, 0.25, density=1100))
+    sag = bar.solve([sp.Displacement("x_min"), sp.Force("x_max", (0, 0, -0.1))]).at([(0.2, 0.05, 0.05)])[0, 2]
+    assert sag == pytest.approx(-0.004, rel=1e-3)
+    assert found["parameters"][0]["u"] == pytest.approx(E * 1e-4 / 0.004, rel=0.05)
+    with pytest.raises(sp.InputError, match="no .*identify.* of the case"):
+        sp.identify(case, only="mass")

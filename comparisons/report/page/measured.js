@@ -1,9 +1,10 @@
 'use strict';
 // Section: simulated values beside measured ones, by ASME V&V 20.
 
-/// In % of D: a difference above 0 makes the value larger.
-const ofMeasured = (v, x) => isNumber(x) && v.measured !== 0 ? 100 * x / v.measured : null;
-const change = (v, x) => isNumber(ofMeasured(v, x)) ? signed(x / v.measured, fixed(ofMeasured(v, x), 1)) : '–';
+/// In % of D, or of S where D is awaited: a difference above 0 makes the value larger.
+const baseOf = v => isNumber(v.measured) ? v.measured : v.simulated;
+const ofMeasured = (v, x) => isNumber(x) && baseOf(v) ? 100 * x / baseOf(v) : null;
+const change = (v, x) => isNumber(ofMeasured(v, x)) ? signed(x / baseOf(v), fixed(ofMeasured(v, x), 1)) : '–';
 const spread = (v, u) => isNumber(ofMeasured(v, u)) ? fixed(Math.abs(ofMeasured(v, u)), 1) : '–';
 
 /// E with u_val on both sides; a line at 0.
@@ -33,10 +34,10 @@ const measuredDrawing = result => ({
 });
 
 function validationTable(values) {
-  const write = unit => column('', unit, values.filter(v => v.unit === unit).flatMap(v => [v.simulated, v.measured]));
+  const write = unit => column('', unit, values.filter(v => v.unit === unit).flatMap(v => [v.simulated, v.measured]).filter(isNumber));
   const row = v => {
     const {unit, text} = write(v.unit), outside = isNumber(v.ratio) && v.ratio > 2;
-    return tr(v.name, v.load_case, text(v.simulated), text(v.measured), unit, change(v, v.error), spread(v, v.u_numerical),
+    return tr(v.name, v.load_case, text(v.simulated), isNumber(v.measured) ? text(v.measured) : 'awaited', unit, change(v, v.error), spread(v, v.u_numerical),
       v.fitted ? '' : spread(v, v.u_input), spread(v, v.u_measured), v.fitted ? '' : spread(v, v.u_val),
       v.fitted ? chip('', 'fitted') : !isNumber(v.ratio) ? '–' : chip(outside ? 'fail' : 'pass', v.ratio.toFixed(1)));
   };

@@ -47,6 +47,18 @@ void add_forces_of(const CellForm& form, double shear_modulus, const CellState& 
   for (int n = 0; n < 8; ++n) f.row(cell[n]) -= gradient.col(n).transpose();
 }
 
+/// What a sum of branches of 1 adds to the hourglass stiffness of the long-time solid: bending modes are stiff as E /
+/// (1 - nu^2), whose bulk modulus does not relax, torsional ones as G.
+HourglassStiffness of_branches(const HourglassStiffness& relaxed, const IsotropicMaterial& material, double sum) {
+  const double nu = material.poisson_ratio, sudden = with_shear(material, 1 + sum).poisson_ratio;
+  const auto bending = [](double ratio) { return HourglassStiffness::of_pattern(2, ratio, true, true).bending; };
+  HourglassStiffness k = relaxed;
+  k.bending *= ((1 + sum) * bending(sudden) - bending(nu)) / (sum * bending(nu));
+  if (relaxed.coupling == nu * relaxed.bending)  // exact for the solid
+    k.coupling = relaxed.bending * ((1 + sum) * sudden * bending(sudden) - nu * bending(nu)) / (sum * bending(nu));
+  return k;
+}
+
 }  // namespace
 
 RelaxingCells RelaxingCells::of(const MassSpringModel& model, const IsotropicMaterial& material,
@@ -54,7 +66,9 @@ RelaxingCells RelaxingCells::of(const MassSpringModel& model, const IsotropicMat
   if (!relaxation.acts()) return {};
   if (const std::string why = lacks(model, Capability::relaxation); !why.empty())
     throw InputError("relaxation does not suit this model: " + why);
-  return {relaxation, averaged_beside(model, material)};
+  RelaxingCells out{relaxation, averaged_beside(model, material)};
+  out.cells.hourglass = of_branches(out.cells.hourglass, material, relaxation.instantaneous() - 1);
+  return out;
 }
 
 Overstrains::Overstrains(const Network& network, const RelaxingCells& relaxing)

@@ -11,11 +11,12 @@ namespace springproof {
 
 /// The branches of a model's cells.  Each has the overstrains Q of two invariants of the cell's mean deformation
 /// gradient F: the deviator of Green-Lagrange's strain, with the stress 2 share G Q (second Piola-Kirchhoff), and the
-/// hourglass components F^T q, with `share` of the stiffness of averaged springs; left elastic these would hold back a
-/// quarter of the creep of a bar of two cells across.  No rigid motion is resisted, and both momenta are kept.
+/// hourglass components F^T q, by which all branches together stiffen a cell suddenly to one of the sudden moduli; left
+/// elastic these would hold back a quarter of the creep of a bar of two cells across.  No rigid motion is resisted, and
+/// both momenta are kept.
 struct RelaxingCells {
   Relaxation relaxation = {};
-  AveragedSprings cells = {};  ///< with the long-time moduli
+  AveragedSprings cells = {};  ///< with the long-time moduli, and the hourglass stiffness of branches of sum 1
 
   /// Those of a model: of its own averaged springs, or of those exact for the material.
   /// @param model a model

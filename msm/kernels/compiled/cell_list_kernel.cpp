@@ -228,22 +228,20 @@ SPRINGPROOF_INLINE void relax(const CellList<Real>& list, Real* P, const Lanes<R
   }
 }
 
-/// v += those of the hourglass components.
+/// P += G F Z, w += (hourglass springs) Z.
 template <class Real>
-SPRINGPROOF_INLINE void add_overstrains(const Lanes<Real> (&Z)[overstrain_count], Lanes<Real> (&v)[4][3]) {
-  for (int m = 0; m < 4; ++m)
-    for (int j = 0; j < 3; ++j) v[m][j] += Z[6 + 3 * m + j];
-}
-
-/// P += G F Z.
-template <class Real>
-SPRINGPROOF_INLINE void add_relaxing_stress(const Lanes<Real>& shear, const Lanes<Real> (&F)[3][3],
-                                            const Lanes<Real> (&Z)[overstrain_count], Lanes<Real> (&P)[3][3]) {
+SPRINGPROOF_INLINE void add_relaxing_stress(const LatticeAveraged<Lanes<Real>>& law, const Cells<Real>& c,
+                                            const Lanes<Real> (&F)[3][3], const Lanes<Real> (&Z)[overstrain_count],
+                                            Lanes<Real> (&P)[3][3], Lanes<Real> (&w)[4][3]) {
   for (int i = 0; i < 3; ++i) {
-    P[i][0] += shear * (F[i][0] * Z[0] + F[i][1] * Z[5] + F[i][2] * Z[4]);
-    P[i][1] += shear * (F[i][0] * Z[5] + F[i][1] * Z[1] + F[i][2] * Z[3]);
-    P[i][2] += shear * (F[i][0] * Z[4] + F[i][1] * Z[3] + F[i][2] * Z[2]);
+    P[i][0] += law.shear * (F[i][0] * Z[0] + F[i][1] * Z[5] + F[i][2] * Z[4]);
+    P[i][1] += law.shear * (F[i][0] * Z[5] + F[i][1] * Z[1] + F[i][2] * Z[3]);
+    P[i][2] += law.shear * (F[i][0] * Z[4] + F[i][1] * Z[3] + F[i][2] * Z[2]);
   }
+  Lanes<Real> of_patterns[4][3];
+  for (int m = 0; m < 4; ++m)
+    for (int j = 0; j < 3; ++j) of_patterns[m][j] = Z[6 + 3 * m + j];
+  add_hourglass_forces(law, c, of_patterns, w);
 }
 
 /// Forces of a vector of cells, the lanes from `at` of their block; `rates`: velocities of the corners.
@@ -270,21 +268,10 @@ SPRINGPROOF_INLINE void forces_of_cells(const CellList<Real>& list, long block, 
     measured_stress<Real>(list.forms + cell_number::of_form * cells<Real> * block + at, c, D, F, dilatation, v, P, w);
   } else {
     const LatticeAveraged<V> springs = times_area(list.springs, c.area);
-    if constexpr (relaxing) add_overstrains<Real>(Z, v);  // branches of averaged springs have their constants
     add_hourglass_forces(springs, c, v, w);
     first_stress<curve>(springs, D, inverse_transposed, dilatation, P);
   }
-  if constexpr (relaxing) {
-    const LatticeAveraged<V> branches = times_area(list.relaxing, c.area);
-    add_relaxing_stress<Real>(branches.shear, F, Z, P);
-    if constexpr (curve == LatticeCurve::none) {
-      V of_patterns[4][3];
-      for (auto& of_pattern : of_patterns)
-        for (V& entry : of_pattern) entry = 0;
-      add_overstrains<Real>(Z, of_patterns);
-      add_hourglass_forces(branches, c, of_patterns, w);
-    }
-  }
+  if constexpr (relaxing) add_relaxing_stress<Real>(times_area(list.relaxing, c.area), c, F, Z, P, w);
   if constexpr (viscous) {
     const LatticeAveraged<V> dashpots = times_area(list.dashpots, c.area);
     V rate[3][3], S_rate[3][4];

@@ -19,7 +19,7 @@ except ImportError as _error:
         "repository: ./quickstart.sh python, and what that prints; or pip install --no-build-isolation ."
     ) from _error
 
-from ._compare import compare, find_program
+from ._compare import compare, find_program, identify
 from ._springproof import (
     Body,
     Displacement,

@@ -116,9 +116,7 @@ def compare(
     Raises InputError with the program's message if the input cannot be used, and what a function of yours raises; warns where an [[expect]] of the case does not
     hold or a run has no result.
     """
-    program = find_program()
-    if not program:
-        raise RuntimeError("compare: there is no program springproof (allowed: on PATH, or named by the environment variable SPRINGPROOF)")
+    program = _program("compare")
     ratios = None if poisson_ratio is None else [float(nu) for nu in (poisson_ratio if isinstance(poisson_ratio, Iterable) else [poisson_ratio])]
     with tempfile.TemporaryDirectory() as folder:
         name = os.fspath(case) if not isinstance(case, Mapping) else str(_write_case(case, pathlib.Path(folder)))
@@ -130,18 +128,60 @@ def compare(
             command.append("--poisson-ratio=" + ",".join(repr(ratio) for ratio in ratios))
         command += [f"--jobs={jobs}"] if jobs is not None else []
         command += ["--resume"] if resume else []
-        run = subprocess.run(command, capture_output=True, text=True)
-        said = run.stderr.strip()
-        if run.returncode == 2:
-            raise InputError(said)
-        if run.returncode == 130:
-            raise KeyboardInterrupt
-        if run.returncode not in (0, 1):
-            raise RuntimeError(f"{program} ended with status {run.returncode}: {said}")
+        run = _run(command)
         rows = _read_rows(results / "results.csv")
         if run.returncode == 1:
-            warnings.warn(f"springproof compare {name}: {said or run.stdout.strip()}", stacklevel=2)
+            warnings.warn(f"springproof compare {name}: {run.stderr.strip() or run.stdout.strip()}", stacklevel=2)
         return rows
+
+
+def identify(
+    case: "str | os.PathLike[str] | Mapping[str, object]",
+    *,
+    only: "str | Iterable[str] | None" = None,
+    start: "Iterable[float] | None" = None,
+    synthetic: int = 0,
+    out: "str | os.PathLike[str] | None" = None,
+    resume: bool = False,
+) -> "list[dict]":
+    """Numbers of a case from what was measured: runs `springproof identify` and returns what it writes to identify.json.
+
+    case: as of compare(), with [[measured]] and [[identify]].  only: names of the [[identify]] that are wanted.  start: one number
+    of each parameter.  synthetic: so many sets are made of the fit, with noise, and fitted.  out: a folder that keeps identify.json,
+    identify.html and what was run; resume: take what was run from there.
+
+    Each [[identify]] is a dict: `parameters` (each with name, value, u, from, to: limits of 95 %, held), `correlation`,
+    `directions` (the worst known first), `values` (fitted: residual over u; predicted: ratio, |E| / u_val), `chi2`, `freedom`,
+    `sentences`; ok False: no result, `message` says why.  Raises InputError with the program's message if the input cannot be used.
+    """
+    program = _program("identify")
+    with tempfile.TemporaryDirectory() as folder:
+        name = os.fspath(case) if not isinstance(case, Mapping) else str(_write_case(case, pathlib.Path(folder)))
+        results = pathlib.Path(out) if out is not None else pathlib.Path(folder) / "results"
+        command = [str(program), "identify", name, "--out", str(results), "--json", f"--synthetic={synthetic}"]
+        for wanted in [only] if isinstance(only, str) else only or []:
+            command += ["--only", wanted]
+        command += ["--start=" + ",".join(repr(float(number)) for number in start)] if start is not None else []
+        command += ["--resume"] if resume else []
+        return json.loads(_run(command).stdout)
+
+
+def _program(what):
+    if program := find_program():
+        return program
+    raise RuntimeError(f"{what}: there is no program springproof (allowed: on PATH, or named by the environment variable SPRINGPROOF)")
+
+
+def _run(command):
+    """A subcommand that ends with status 0 or 1."""
+    run = subprocess.run(command, capture_output=True, text=True)
+    if run.returncode == 2:
+        raise InputError(run.stderr.strip())
+    if run.returncode == 130:
+        raise KeyboardInterrupt
+    if run.returncode not in (0, 1):
+        raise RuntimeError(f"{command[0]} ended with status {run.returncode}: {run.stderr.strip()}")
+    return run
 
 
 def _with_models(name, models, ratios, program, folder):

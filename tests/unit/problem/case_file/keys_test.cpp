@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <map>
 #include <set>
 
@@ -25,6 +26,8 @@ Values beside(const std::string& table, const std::string& key) {
       {"expect", {{"value", "1"}, {"within", "0.04"}}},
       {"mass", {{"on", "\"x_max\""}}},
       {"load_case", {{"with", "{ mass = [] }"}}},
+      {"measured", {{"values", "[{ name = \"sag\", quantity = \"displacement.tip.z\", value = -0.01, u = 3e-4 }]"}}},
+      {"measured.values", {{"value", "-0.0108"}, {"u", "3e-4"}}},
       {"input", {{"of", "\"body.size_m[2]\""}, {"u", "3e-4"}}},
       {"external", {{"file", "\"abaqus.csv\""}}}};
   static const Values voxels = {{"cells", ""}, {"voxels", "100"}}, no_young = {{"youngs_modulus_Pa", ""}},
@@ -49,6 +52,7 @@ Values beside(const std::string& table, const std::string& key) {
       {"mass.at_m", {{"on", ""}}},
       {"input.with", {{"of", ""}, {"u", ""}}},
       {"measured.values.arm_m", {{"quantity", "\"mean_displacement.x_max.z\""}}},
+      {"measured.histories.arm_m", {{"quantity", "\"mean_displacement.x_max.z\""}}},
       {"reference.integrator", {{"in_time", "true"}}},
       {"expect.within_relative", {{"within", ""}}},
       {"expect.at_least", {{"value", ""}, {"within", ""}}},
@@ -83,25 +87,32 @@ std::string heading_of(const std::string& table) {
       {"patch.near", "[[patch]]\nname = \"wrist\"\n[patch.near]\n"},
       {"material.relaxation.branches", "[[material.relaxation.branches]]\n"},
       {"external.files", "[[external]]\nname = \"abaqus\"\n[[external.files]]\n"},
+      {"identify.parameters", "[[identify]]\nname = \"modulus\"\n[[identify.parameters]]\n"},
+      {"measured.histories", "[[measured]]\nsource = \"here\"\nlicence = \"none\"\n[[measured.histories]]\n"},
       {"measured.values", "[[measured]]\nsource = \"here\"\nlicence = \"none\"\n[[measured.values]]\n"},
       {"load_case", "[[load_case]]\nname = \"52 g\"\n[[load_case]]\n"},
       {"dynamics.plane", "[dynamics]\nduration_s = 10\n[dynamics.plane]\n"}};
   if (const auto part = parts.find(table); part != parts.end()) return part->second;
   if (table.starts_with("load.")) return "[[load]]\n";
   const std::set<std::string> several = {"patch",    "mass",  "probe",    "expect", "published",
-                                         "external", "input", "measured", "region"};
+                                         "external", "input", "measured", "region", "identify"};
   return several.contains(table) ? "[[" + table + "]]\n" : "[" + table + "]\n";
 }
 
 /// What stands before and after a table of measured values, or of what is beside them.
 std::pair<std::string, std::string> around_measured(const std::string& table, const std::string& key) {
-  if (!table.starts_with("measured") && table != "load_case" && table != "input") return {};
-  const bool fit = key == "fitted" || key == "use";
+  const bool identified = table.starts_with("identify");
+  if (!table.starts_with("measured") && !identified && table != "load_case" && table != "input") return {};
+  const bool fit = key == "fitted" || key == "use" || identified;
   std::string before =
       "[[mass]]\nname = \"weight\"\non = \"x_max\"\nmass_kg = 0.052\n[[probe]]\nname = \"tip\"\nat_m = [0, 0, 0]\n"
       "[compare]\nmeasures = [\"probe\", \"mean_displacement\"]\n";
   if (table != "load_case")
     before += "[[load_case]]\nname = \"52 g\"\n[[load_case]]\nname = \"own weight\"\nwith = { mass = [] }\n";
+  if (table == "measured.histories") {
+    std::ofstream("creep.csv") << "time_s,value_m,u_m\n1,-0.01,3e-4\n2,-0.011,3e-4\n";
+    before += "[material.relaxation]\nbranches = [{ share = 0.1, time_s = 1 }]\n";
+  }
   if (fit && table != "input")
     before += "[[input]]\nname = \"E\"\nof = \"material.youngs_modulus_Pa\"\nu = 1\nfitted = true\n";
   if (table.starts_with("measured")) return {before, ""};

@@ -1,0 +1,76 @@
+// Natural frequencies of a material that relaxes.
+#include "comparisons/models/frequencies.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+
+#include "comparisons/run/prepare.h"
+#include "fem_reference/exchange/reference.h"
+#include "problem/processes/child.h"
+
+namespace springproof::frequencies_test {
+namespace {
+
+PreparedCase relaxing_bar() {
+  const std::string text = R"([body]
+geo = "block.geo"
+size_m = [0.4, 0.1, 0.1]
+cells = [4, 1, 1]
+[material]
+youngs_modulus_Pa = 1e4
+poisson_ratio = 0.3
+density_kg_m3 = 1000
+[material.relaxation]
+branches = [{ share = 0.2, time_s = 0.5 }]
+[[load]]
+on = "x_min"
+displacement_m = [0, 0, 0]
+[compare]
+models = ["hybmss_avg"]
+[reference]
+cells = [8, 4, 4]
+)";
+  return prepare_lattices(case_of_modes(parse_experiment(text, "bar.toml"), {.modes = 2}));
+}
+
+/// The elements' program, which fails from its n-th call on.
+class FailingProgram {
+ public:
+  explicit FailingProgram(int n) {
+    std::ofstream(script_) << "#!/bin/sh\necho >>" << folder_.path.string() << "/calls\n[ $(wc -l <"
+                           << folder_.path.string() << "/calls) -lt " << n << " ] || exit 1\nexec "
+                           << SPRINGPROOF_BINARY_DIR << "/springproof-fem \"$@\"\n";
+    std::filesystem::permissions(script_, std::filesystem::perms::owner_all);
+    setenv("SPRINGPROOF_FEM_PROGRAM", script_.c_str(), 1);
+  }
+  ~FailingProgram() { unsetenv("SPRINGPROOF_FEM_PROGRAM"); }
+  int calls() const {
+    std::ifstream file(folder_.path / "calls");
+    return static_cast<int>(std::count(std::istreambuf_iterator<char>(file), {}, '\n'));
+  }
+
+ private:
+  TemporaryFolder folder_;
+  std::filesystem::path script_ = folder_.path / "springproof-fem";
+};
+
+TEST(RelaxingFrequencies, WithoutTheModesOfASuddenStrainThereIsNoReference) {
+  if (!fem::available()) GTEST_SKIP() << "no springproof-fem";
+  const PreparedCase prepared = relaxing_bar();
+  const auto table_by = [&](int failing_call, int& calls) {
+    const FailingProgram program(failing_call);
+    const FrequencyTable table = natural_frequencies(prepared, prepared.experiment.materials[0], {.modes = 2}).front();
+    calls = program.calls();
+    return table;
+  };
+  int calls = 0;
+  EXPECT_EQ(table_by(100, calls).failure, "");
+  ASSERT_GE(calls, 2);  // of long times, and sudden
+  EXPECT_NE(table_by(calls, calls).failure, "");
+}
+
+}  // namespace
+}  // namespace springproof::frequencies_test
