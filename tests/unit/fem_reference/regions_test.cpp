@@ -63,6 +63,8 @@ TEST_P(FemRegions, InSeriesAreExactAtAnyContrast) {
       ASSERT_EQ(s.regions.size(), 1u);
       EXPECT_NEAR(s.regions[0].stress(0, 0) / -10, 1, 1e-6);
       EXPECT_NEAR(s.regions[0].stress(0, 1), -10 * nu / (1 - nu), 1e-5);
+      ASSERT_EQ(s.interfaces.size(), 1u);
+      EXPECT_NEAR(s.interfaces[0].force[0], 10, 1e-5);            // the first half bears the second
       EXPECT_NEAR(s.regions[0].volume_change / beyond, 1, 5e-5);  // 1e4 x residual
       EXPECT_NEAR(s.regions[0].displacement[0] / (at_middle + beyond / 2), 1, 1e-6);
       EXPECT_NEAR(s.regions[0].energy / (5 * -beyond), 1, 5e-5);
@@ -126,6 +128,7 @@ TEST_P(FemRegions, InSeriesAreExactAtLargeStrain) {
       ASSERT_EQ(s.regions.size(), 1u);
       EXPECT_NEAR(s.regions[0].stress(0, 0) / at.stress, 1, 1e-5);  // the area stays what it is
       EXPECT_NEAR(s.regions[0].volume_change, b - 1, 1e-6);
+      EXPECT_NEAR(s.interfaces.at(0).force[0] / -at.stress, 1, 1e-5);
       EXPECT_NEAR(s.regions[0].energy / at.energy, 1, 1e-4) << law << mean << contrast << " " << nu;
     }
 }
