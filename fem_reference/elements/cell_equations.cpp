@@ -142,7 +142,7 @@ PointStates states(const CellLaw& law, const CellShape& shape, const CellVector&
 template <class T, class Function>
 auto mean_over(const T& a, const T& b, const Function& f, bool two = false) {
   constexpr double at[2] = {0.33998104358485626, 0.86113631159405258},
-      weight[2] = {0.32607257743127307, 0.17392742256872693}, of_two = 0.57735026918962576;
+                   weight[2] = {0.32607257743127307, 0.17392742256872693}, of_two = 0.57735026918962576;
   const T middle = (a + b) / 2, half = (b - a) / 2;
   using Mean = std::decay_t<decltype(f(a))>;
   if (two) return Mean(0.5 * (f(T(middle - of_two * half)) + f(T(middle + of_two * half))));
@@ -271,7 +271,8 @@ CellVector step_residual(const CellLaw& law, const CellShape& shape, const CellV
     // Two points err by 1e-2 mu times the fourth power of this change: round-off.
     const bool small = (C1 - C0).norm() * C0.inverse().norm() < 1e-3;
     const Vector6 S = mean_over(
-        C0, C1, [&](const Matrix3d& C) { return Vector6(from_voigt(springproof::fem::stress(*law.law, law.mu, p, C))); },
+        C0, C1,
+        [&](const Matrix3d& C) { return Vector6(from_voigt(springproof::fem::stress(*law.law, law.mu, p, C))); },
         small);
     stress.middleRows<3>(3 * q) = w / 2 * tensor(S) * (F0 + F1).transpose();
   }
