@@ -250,7 +250,9 @@ void solve_modes(const GridProblem& problem, const Body3& body, const dealii::Do
   const auto [low, high] = dealii::GridTools::compute_bounding_box(body.triangulation).get_boundary_points();
   const Pencil pencil =
       assemble_pencil(problem, body, dof_handler, laws, shear_modulus(problem.material) / low.distance(high));
-  const double slowest = shear_modulus(problem.material) / problem.material.density / low.distance_square(high);
+  double slowest = shear_modulus(problem.material) / problem.material.density / low.distance_square(high);
+  for (const IsotropicMaterial& m : problem.regions)
+    slowest = std::min(slowest, shear_modulus(m) / m.density / low.distance_square(high));
   Eigensolver solver;
   set_up(pencil, -0.01 * slowest, solver);
   solution.form = fmt::format("{}, consistent mass, Krylov-Schur", describe(element, form_of(laws)));

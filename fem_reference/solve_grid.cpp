@@ -162,7 +162,9 @@ ElasticAnswer solve_linear(const GridProblem& problem, const Discrete& discrete,
 // Small enough that the linear predictor stays near the solution path: it enlarges rotating bodies and preserves volume
 // only to first order.
 double first_load_step(const GridProblem& problem, bool tetrahedra) {
-  double step = problem.material.poisson_ratio > 0.45 || tetrahedra ? 0.25 : 1;
+  double largest = problem.material.poisson_ratio;
+  for (const IsotropicMaterial& m : problem.regions) largest = std::max(largest, m.poisson_ratio);
+  double step = largest > 0.45 || tetrahedra ? 0.25 : 1;
   for (const Load& load : problem.loads)
     if (const auto* turn = std::get_if<PrescribedRotation>(&load)) step = std::min(step, 0.35 / std::abs(turn->angle));
   return step;
@@ -211,7 +213,10 @@ void solve_into(Solution& solution, const GridProblem& problem, const Body3& bod
   solution.stress = stress_at(problem.stress_points, discrete.system, law_named(problem.law), answer, u);
   if (!problem.vtu.empty() && solution.ok)
     write_solution(problem.vtu, at_own_nodes(discrete.system, law_named(problem.law), answer, u), problem.vtu_notes);
-  if (!problem.regions.empty()) solution.regions = measure_regions(discrete.system, answer, u);
+  if (!problem.regions.empty()) {
+    solution.regions = measure_regions(discrete.system, answer, u);
+    solution.interfaces = measure_interfaces(discrete.system, answer, u);
+  }
   const VolumeMeasure volume = measure_volume(body, dof_handler, u);
   solution.volume_change = volume.change;
   solution.volume_change_first_order = volume.change_first_order;

@@ -200,7 +200,6 @@ int FrequenciesCommand::run() const try {
   const std::vector<fs::path> found = find_cases({case_});
   if (found.size() > 1) throw InputError(fmt::format("{} is a folder of {} cases; name one", case_, found.size()));
   const Experiment whole = read_experiment(found.front());
-  require_one_material(whole, "frequencies");
   const Experiment experiment = with_materials(case_of_modes(whole, options_), poisson_ratios_);
   end_at_interrupts();
   Status status;

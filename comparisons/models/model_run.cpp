@@ -163,8 +163,11 @@ ModelSample measured(const PreparedCase& prepared, const Lattice& lattice, const
           : at_measured_points(prepared, lattice, sample.field.displacement));
   if (cut && averaged_springs_of(built.model) && asked(e, "promised_error") && !in_motion)
     sample.scalars["promised_error"] = cell_energies(built.model, sample.state.displacement).promised_error();
-  if (!network.cells.materials.empty() && asked(e, "region"))
-    sample.scalars.merge(region_means(network, e.regions, sample.state.displacement));
+  const bool by_material = !network.cells.materials.empty();
+  if (by_material && asked(e, "region"))
+    sample.scalars.merge(region_means(built.model, e.regions, sample.state.displacement, e.model_kinematics()));
+  if (by_material && asked(e, "interface"))
+    sample.scalars.merge(interface_forces(built.model, e.regions, sample.state.displacement, e.model_kinematics()));
   if (asked(e, "network")) add_network(network, sample.scalars);
   if (asked(e, "line")) {
     sample.line = sample_line(*e.line, *kelvin_of(e), built.model, sample.state.displacement);

@@ -56,10 +56,11 @@ namespace {
 /// z over those of its cells, as a fraction of these.  A corner's mass has l^2 / 4 about the middle of a cell, the cell
 /// l^2 / 12; a share of consistent mass has the cell's.
 double inertia_excess(const Network& network, const Eigen::VectorXd& mass, double mass_consistency) {
-  double volume = 0;
+  double volume = 0;  // times the density over that of the body's own material, as all here
   Vec3 own = Vec3::Zero();
   for (std::size_t c = 0; c < network.cells.size(); ++c) {
-    const double V = filled_volume(network, c);
+    const std::vector<double>& densities = network.cells.relative_densities;
+    const double V = filled_volume(network, c) * (densities.empty() ? 1 : densities[network.cells.material(c)]);
     volume += V;
     own += V * (network.cells.edge_of(c) * network.cells.proportions).array().square().matrix() / 6;
   }
@@ -148,8 +149,8 @@ void measure(const MovingNetwork& moving, const BoundaryConditions& last, Histor
   const double scale = std::sqrt(2 * masses.sum() * *std::max_element(kinetic.begin(), kinetic.end()));
   const bool flies = std::none_of(last.fixed.begin(), last.fixed.end(), [](bool f) { return f; });
   if (flies && !moving.network().cells.empty())
-    h.measured["inertia_excess"] =
-        inertia_excess(moving.network(), moving.material.density * moving.network().volume, motion.mass_consistency);
+    h.measured["inertia_excess"] = inertia_excess(
+        moving.network(), moving.material.density * volumes_by_mass(moving.network()), motion.mass_consistency);
   if (flies && !motion.plane && last.external.isZero(0) && !damped) measure_spin(moving, scale, h);
   if (!damped) measure_momentum(motion, last, scale, h);
 }

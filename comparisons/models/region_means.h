@@ -5,14 +5,23 @@
 #include <string>
 #include <vector>
 
-#include "msm/topology/network.h"
+#include "msm/laws/laws.h"
 #include "problem/region.h"
 
 namespace springproof {
 
-/// region.<region>.<quantity> of cells, at small strain: volume_change, mean_stress, pressure by the mean strain of
-/// each cell and Hooke's law, displacement.  No energy: that of hourglass modes is none of a mean strain.
-std::map<std::string, double> region_means(const Network& network, const std::vector<MaterialRegion>& regions,
-                                           const NodalVectors& u);
+/// region.<region>.<quantity> of cells of averaged springs: volume_change by the mean deformation gradients;
+/// displacement over the volume at rest; energy of the cells, without that of the bonds; mean_stress, pressure of
+/// Cauchy's stress over the deformed volume: the first moments of the forces of the cells on their corners, or at small
+/// strain Hooke's law of the mean strain.
+/// @throws std::invalid_argument if the model has no averaged springs.
+std::map<std::string, double> region_means(const MassSpringModel& model, const std::vector<MaterialRegion>& regions,
+                                           const NodalVectors& u, Kinematics kinematics);
+
+/// interface.<region>.<other>.force of the same cells: of the bonds between two materials and, where cells of both have
+/// common corners, half of the difference of their forces there.
+/// @throws std::invalid_argument if the model has no averaged springs.
+std::map<std::string, double> interface_forces(const MassSpringModel& model, const std::vector<MaterialRegion>& regions,
+                                               const NodalVectors& u, Kinematics kinematics);
 
 }  // namespace springproof

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <map>
 
+#include "msm/dynamics/time_step.h"
 #include "msm/embedding/boundary.h"
 #include "msm/exchange/anchored_springs.h"
 #include "msm/vertex_models.h"
@@ -79,6 +80,11 @@ EmbeddedModel built_on(const PreparedCase& prepared, const Lattice& lattice, con
                       materials_of(prepared.experiment.regions));
 }
 
+/// Or may take them.
+bool takes_explicit_steps(const MotionChoice& motion) {
+  return motion.integrator == "explicit" || motion.integrator == "auto";
+}
+
 }  // namespace
 
 const Network& FittedNetworks::of(const ModelParameters& parameters, const Mesh& tetrahedra) {
@@ -113,6 +119,7 @@ EmbeddedModel build_on(const PreparedCase& prepared, const Lattice& lattice, con
   EmbeddedModel built = built_on(prepared, lattice, parameters, held, material, in_motion);
   choose_axes(prepared.loads, built.embedding.held, built.model.network);
   attach_masses(prepared.experiment, *lattice.mesh, built);
+  if (in_motion && takes_explicit_steps(*prepared.experiment.dynamics)) soften_bonds(built.model, material.density);
   if (in_motion && held.empty()) {  // in flight all nodes fall alike
     built.embedding.free_fall = true;
     if (!built.embedding.patches.empty()) built.embedding.volumes = built.model.network.volume;

@@ -240,6 +240,7 @@ std::map<std::string, double> measures_of(const PreparedCase& prepared, const fe
   if (const Eigen::Index measured = first_pictured_stress(prepared); measured > 0 && s.stress.rows() >= measured)
     values.merge(stress_measures(probes, s.stress.topRows(measured)));
   values.merge(region_measures(prepared.experiment.regions, s.regions));
+  values.merge(interface_measures(prepared.experiment.regions, s.interfaces));
   return values;
 }
 
@@ -256,6 +257,17 @@ std::map<std::string, double> region_measures(const std::vector<MaterialRegion>&
     for (int c = 0; c < 6; ++c) out[region + "mean_stress." + components[c]] = m.stress(0, c);
     for (int d = 0; d < 3; ++d) out[region + "displacement." + "xyz"[d]] = m.displacement[d];
     out[region + "displacement.magnitude"] = m.displacement.norm();
+  }
+  return out;
+}
+
+std::map<std::string, double> interface_measures(const std::vector<MaterialRegion>& regions,
+                                                 const std::vector<fem::InterfaceForce>& interfaces) {
+  std::map<std::string, double> out;
+  for (const fem::InterfaceForce& i : interfaces) {
+    const std::string name = interface_of(regions, i.material, i.other);
+    for (int d = 0; d < 3; ++d) out[name + '.' + "xyz"[d]] = i.force[d];
+    out[name + ".magnitude"] = i.force.norm();
   }
   return out;
 }

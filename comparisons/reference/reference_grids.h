@@ -71,6 +71,10 @@ std::map<std::string, double> measures_of(const PreparedCase& prepared, const fe
 std::map<std::string, double> region_measures(const std::vector<MaterialRegion>& regions,
                                               const std::vector<fem::RegionMeans>& means);
 
+/// interface.<region>.<other>.force of all that meet, of finite elements or springs.
+std::map<std::string, double> interface_measures(const std::vector<MaterialRegion>& regions,
+                                                 const std::vector<fem::InterfaceForce>& interfaces);
+
 /// The measures of a field that have a value of their own; `u` is the displacement at the measured points.
 std::map<std::string, double> field_measures(const PreparedCase& prepared, const Field& field, const NodalVectors& u);
 

@@ -33,11 +33,12 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Discretisation, cells, element, grading, mesh
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MotionRequest, duration, damping, course, released, velocity, spin, viscosity,
                                    relaxation, energy_momentum)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RegionMeans, volume_change, displacement, stress, energy)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(InterfaceForce, material, other, force)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Solution, grid, ok, message, form, law, displacement, stress, reactions, regions,
-                                   volume_change, volume_change_first_order, min_jacobian, degrees_of_freedom, unknowns,
-                                   cells, cells_per_process, iterations, residual, seconds, times, memory_MiB,
-                                   frequencies, shapes, rigid_motions, time, path, kinetic_energy, elastic_energy,
-                                   angular_momentum)
+                                   interfaces, volume_change, volume_change_first_order, min_jacobian,
+                                   degrees_of_freedom, unknowns, cells, cells_per_process, iterations, residual,
+                                   seconds, times, memory_MiB, frequencies, shapes, rigid_motions, time, path,
+                                   kinetic_energy, elastic_energy, angular_momentum)
 
 nlohmann::json to_json(const Request& r) {
   nlohmann::json meshes = nlohmann::json::array();

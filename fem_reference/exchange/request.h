@@ -70,12 +70,18 @@ struct Request {
       {};  ///< that modes and motions have beside the body's own; their weight is in `loads`
 };
 
-/// Means over a region, and its energy, at small strain.
+/// Means over a region, and its energy.
 struct RegionMeans {
   double volume_change = 0;                ///< of det F - 1 [1]
-  Vec3 displacement = Vec3::Zero();        ///< [m]
-  Stresses stress = Stresses::Zero(1, 6);  ///< [Pa]
-  double energy = 0;                       ///< in all [J]
+  Vec3 displacement = Vec3::Zero();        ///< over the volume at rest [m]
+  Stresses stress = Stresses::Zero(1, 6);  ///< Cauchy's, at large strain over the deformed volume [Pa]
+  double energy = 0;                       ///< in all [J]; of laws without one NaN
+};
+
+/// Between the cells of two materials, numbers in Mesh::materials.
+struct InterfaceForce {
+  int material = 0, other = 0;  ///< material > other
+  Vec3 force = Vec3::Zero();    ///< on the first by the second [N]
 };
 
 /// The result on one grid.
@@ -88,26 +94,27 @@ struct Solution {
   NodalVectors displacement;  ///< at Request::points [m]
   Stresses stress;            ///< Cauchy stress at Request::stress_points
   std::vector<PatchReaction> reactions;
-  std::vector<RegionMeans> regions = {};  ///< of Request::regions
-  double volume_change = 0;               ///< exact, by the element's own quadrature [1]
-  double volume_change_first_order = 0;   ///< integral of div u / V [1]
-  double min_jacobian = 1;                ///< min det F at quadrature points
-  long degrees_of_freedom = 0;            ///< of the displacement, including constrained ones
-  long unknowns = 0;                      ///< unconstrained degrees of freedom
-  long cells = 0;                         ///< of the finest mesh
-  long cells_per_process = 0;             ///< of them in the memory of the largest process, with ghost cells
-  int iterations = 0;                     ///< of the linear solver, all steps together
-  double residual = 0;                    ///< relative, of the final state
-  double seconds = 0;                     ///< CPU time of this grid, of all processes
-  RunTimes times;                         ///< the part of it spent on the displacement; the rest is post-processing
-  std::vector<double> frequencies;        ///< of Request::modes and some more, ascending, without rigid motions [Hz]
-  std::vector<NodalVectors> shapes;       ///< of these modes, at Request::points [kg^-1/2]
-  int rigid_motions = 0;                  ///< that the supports leave
-  std::vector<double> time;               ///< of Request::motion: 0 and the end of every step [s]
-  std::vector<NodalVectors> path;         ///< displacements at Request::points at these times [m]
-  std::vector<double> kinetic_energy;     ///< at these times [J]
-  std::vector<double> elastic_energy;     ///< [J]; of laws at finite strain that have one, else empty
-  std::vector<Vec3> angular_momentum;     ///< about the origin [kg m^2/s]
+  std::vector<RegionMeans> regions = {};        ///< of Request::regions
+  std::vector<InterfaceForce> interfaces = {};  ///< of all that meet
+  double volume_change = 0;                     ///< exact, by the element's own quadrature [1]
+  double volume_change_first_order = 0;         ///< integral of div u / V [1]
+  double min_jacobian = 1;                      ///< min det F at quadrature points
+  long degrees_of_freedom = 0;                  ///< of the displacement, including constrained ones
+  long unknowns = 0;                            ///< unconstrained degrees of freedom
+  long cells = 0;                               ///< of the finest mesh
+  long cells_per_process = 0;                   ///< of them in the memory of the largest process, with ghost cells
+  int iterations = 0;                           ///< of the linear solver, all steps together
+  double residual = 0;                          ///< relative, of the final state
+  double seconds = 0;                           ///< CPU time of this grid, of all processes
+  RunTimes times;                      ///< the part of it spent on the displacement; the rest is post-processing
+  std::vector<double> frequencies;     ///< of Request::modes and some more, ascending, without rigid motions [Hz]
+  std::vector<NodalVectors> shapes;    ///< of these modes, at Request::points [kg^-1/2]
+  int rigid_motions = 0;               ///< that the supports leave
+  std::vector<double> time;            ///< of Request::motion: 0 and the end of every step [s]
+  std::vector<NodalVectors> path;      ///< displacements at Request::points at these times [m]
+  std::vector<double> kinetic_energy;  ///< at these times [J]
+  std::vector<double> elastic_energy;  ///< [J]; of laws at finite strain that have one, else empty
+  std::vector<Vec3> angular_momentum;  ///< about the origin [kg m^2/s]
   double memory_MiB = 0;  ///< peak resident set so far, of the largest process; for an experiment with `cost` the
                           ///< growth due to this grid
 };

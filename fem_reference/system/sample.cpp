@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 
 #include "fem_reference/grid/processes.h"
 #include "problem/system/input_error.h"
@@ -217,10 +218,53 @@ NodalSolution at_own_nodes(const ElasticSystem& system, std::optional<Law> law, 
   return out;
 }
 
+namespace {
+
+// The dilatation at the points of a cell, as its form takes it.
+std::vector<double> dilatations(const CellLaw& law, const std::vector<dealii::Tensor<2, 3>>& gradients,
+                                const std::vector<double>& weights) {
+  std::vector<double> g;
+  for (const auto& h : gradients)
+    g.push_back(law.law ? dilatation(*law.law, deformation_gradient(h)) : dealii::trace(h));
+  if (law.form == Form::mean_dilatation) {
+    const double volume = std::accumulate(weights.begin(), weights.end(), 0.0);
+    g.assign(g.size(), std::inner_product(g.begin(), g.end(), weights.begin(), 0.0) / volume);
+  }
+  return g;
+}
+
+// Stress and energy at a point of a cell.
+struct PointState {
+  Eigen::Matrix3d stress;  // Cauchy's
+  double energy;           // per rest volume [Pa]
+};
+
+PointState state_at(const CellLaw& law, const dealii::Tensor<2, 3>& h, double p, double g) {
+  if (!law.law) {
+    const Eigen::Matrix3d stress = linear_stress(h, law.mu, p);
+    double work = 0;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) work += stress(i, j) * h[i][j];
+    return {stress, work / 2};
+  }
+  const Matrix3 F = deformation_gradient(h);
+  double energy = shear_energy(*law.law, law.mu, F);
+  if (law.form != Form::mixed) {
+    energy += dilatation_energy(*law.law, law.lambda, g);
+  } else {
+    const double others = law.lambda - law.pointwise, of_points = pressure(*law.law, law.pointwise, g).value;
+    const double of_unknown = dilatation_at_pressure(*law.law, others, p - of_points).value;
+    energy += dilatation_energy(*law.law, law.pointwise, g) + dilatation_energy(*law.law, others, of_unknown);
+  }
+  return {cauchy_stress(*law.law, F, law.mu, p), energy};
+}
+
+}  // namespace
+
 std::vector<RegionMeans> measure_regions(const ElasticSystem& system, const ElasticAnswer& answer,
                                          const DofVector& displacement) {
   std::vector<RegionMeans> regions(system.laws.size() - 1);
-  std::vector<double> volume(regions.size(), 0);
+  std::vector<double> volume(regions.size(), 0), deformed = volume;
   dealii::FEValues<3> values(*system.body.mapping, system.dof_handler.get_fe(),
                              cell_quadrature(system.body, system.degree + 1),
                              dealii::update_values | dealii::update_gradients | dealii::update_JxW_values);
@@ -229,31 +273,92 @@ std::vector<RegionMeans> measure_regions(const ElasticSystem& system, const Elas
   std::vector<dealii::Tensor<1, 3>> u(values.n_quadrature_points);
   for (const auto& cell : system.dof_handler.active_cell_iterators()) {
     if (cell->material_id() == 0) continue;
-    const CellLaw& law = system.laws[cell->material_id()];
-    RegionMeans& region = regions[cell->material_id() - 1];
+    const std::size_t r = cell->material_id() - 1;
+    const CellLaw& law = system.laws[r + 1];
     values.reinit(cell);
     values[vector].get_function_gradients(displacement, gradients);
     values[vector].get_function_values(displacement, u);
+    const std::vector<double> g = dilatations(law, gradients, values.get_JxW_values());
     for (const unsigned int q : values.quadrature_point_indices()) {
-      const dealii::Tensor<2, 3>& h = gradients[q];
-      const double w = values.JxW(q), trace = dealii::trace(h);
-      const double p = pressure_at(law, answer.pressure, {cell, values.get_quadrature().point(q)}, trace);
-      const Eigen::Matrix3d stress = linear_stress(h, law.mu, p);
-      volume[cell->material_id() - 1] += w;
-      region.volume_change += w * det_minus_1(h);
-      region.stress += w * components(stress);
-      for (int i = 0; i < 3; ++i) {
-        region.displacement[i] += w * u[q][i];
-        for (int j = 0; j < 3; ++j) region.energy += w / 2 * stress(i, j) * h[i][j];
-      }
+      const double w = values.JxW(q), change = det_minus_1(gradients[q]), now = law.law ? w * (1 + change) : w;
+      const double p = pressure_at(law, answer.pressure, {cell, values.get_quadrature().point(q)}, g[q]);
+      const PointState at = state_at(law, gradients[q], p, g[q]);
+      volume[r] += w;
+      deformed[r] += now;
+      regions[r].volume_change += w * change;
+      regions[r].stress += now * components(at.stress);
+      regions[r].energy += w * at.energy;
+      for (int i = 0; i < 3; ++i) regions[r].displacement[i] += w * u[q][i];
     }
   }
   for (std::size_t r = 0; r < regions.size(); ++r) {
     regions[r].volume_change /= volume[r];
     regions[r].displacement /= volume[r];
-    regions[r].stress /= volume[r];
+    regions[r].stress /= deformed[r];
   }
   return regions;
+}
+
+namespace {
+
+// Integral over a face of the traction on the cell.
+Vec3 force_on_face(const dealii::Triangulation<3>::active_cell_iterator& cell, const CellLaw& law,
+                   const CellPressures& pressures, const dealii::FEFaceValues<3>& face,
+                   const std::vector<dealii::Tensor<2, 3>>& gradients, std::optional<double> mean_dilatation) {
+  Vec3 force = Vec3::Zero();
+  for (const unsigned int q : face.quadrature_point_indices()) {
+    const dealii::Tensor<2, 3>& h = gradients[q];
+    const Matrix3 F = deformation_gradient(h);
+    const double g = mean_dilatation.value_or(law.law ? dilatation(*law.law, F) : dealii::trace(h));
+    const Location at{cell, face.get_mapping().transform_real_to_unit_cell(cell, face.quadrature_point(q))};
+    const PointState state = state_at(law, h, pressure_at(law, pressures, at, g), g);
+    Vec3 area(face.normal_vector(q)[0], face.normal_vector(q)[1], face.normal_vector(q)[2]);
+    if (law.law) {  // of the deformed face: det F F^-T
+      Eigen::Matrix3d deformation;
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) deformation(i, j) = F[i][j];
+      area = deformation.determinant() * deformation.inverse().transpose() * area;
+    }
+    force += face.JxW(q) * state.stress * area;
+  }
+  return force;
+}
+
+}  // namespace
+
+std::vector<InterfaceForce> measure_interfaces(const ElasticSystem& system, const ElasticAnswer& answer,
+                                               const DofVector& displacement) {
+  const auto& fe = system.dof_handler.get_fe();
+  dealii::FEFaceValues<3> face(*system.body.mapping, fe, face_quadrature(system.body, system.degree + 1),
+                               dealii::update_gradients | dealii::update_JxW_values | dealii::update_normal_vectors |
+                                   dealii::update_quadrature_points);
+  dealii::FEValues<3> inside(*system.body.mapping, fe, cell_quadrature(system.body, system.degree + 1),
+                             dealii::update_gradients | dealii::update_JxW_values);
+  const dealii::FEValuesExtractors::Vector vector(0);
+  std::vector<dealii::Tensor<2, 3>> gradients(face.n_quadrature_points), of_cell(inside.n_quadrature_points);
+  std::map<std::pair<unsigned int, unsigned int>, Vec3> forces;
+  for (const auto& cell : system.dof_handler.active_cell_iterators())
+    for (const unsigned int f : cell->face_indices()) {
+      const unsigned int own = cell->material_id();
+      if (cell->at_boundary(f) || cell->neighbor(f)->material_id() == own) continue;
+      const unsigned int other = cell->neighbor(f)->material_id();
+      const CellLaw& law = system.laws[own];
+      std::optional<double> mean;
+      if (law.form == Form::mean_dilatation) {
+        inside.reinit(cell);
+        inside[vector].get_function_gradients(displacement, of_cell);
+        mean = dilatations(law, of_cell, inside.get_JxW_values()).front();
+      }
+      face.reinit(cell, f);
+      face[vector].get_function_gradients(displacement, gradients);
+      const Vec3 force = force_on_face(cell, law, answer.pressure, face, gradients, mean) / 2;
+      const auto at = forces.try_emplace({std::max(own, other), std::min(own, other)}, Vec3::Zero()).first;
+      at->second += own > other ? force : Vec3(-force);
+    }
+  std::vector<InterfaceForce> interfaces;
+  for (const auto& [materials, force] : forces)
+    interfaces.push_back({int(materials.first), int(materials.second), force});
+  return interfaces;
 }
 
 VolumeMeasure measure_volume(const Body3& body, const dealii::DoFHandler<3>& dof_handler,

@@ -33,9 +33,13 @@ struct NodalSolution {
 NodalSolution at_own_nodes(const ElasticSystem& system, std::optional<Law> law, const ElasticAnswer& answer,
                            const DofVector& displacement);
 
-/// Means over the cells of each material but the body's own, at small strain.
+/// Means over the cells of each material but the body's own.
 std::vector<RegionMeans> measure_regions(const ElasticSystem& system, const ElasticAnswer& answer,
                                          const DofVector& displacement);
+
+/// Forces across the facets between cells of two materials: the mean of what the tractions of both sides give.
+std::vector<InterfaceForce> measure_interfaces(const ElasticSystem& system, const ElasticAnswer& answer,
+                                               const DofVector& displacement);
 
 struct VolumeMeasure {
   double change = 0;              ///< integral of det(I + grad u) - 1, divided by V

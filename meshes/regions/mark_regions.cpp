@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <set>
@@ -191,8 +193,64 @@ double extent_of(const Mesh& mesh) {
   return (mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff()).norm();
 }
 
+/// Facets between the cells of a region and others, or the surface, whose nodes are all on its sphere.
+std::vector<std::array<int, 3>> facets_on(const Border& sphere, std::uint8_t number, double slack, const CutMesh& cut) {
+  std::map<std::array<int, 3>, int> cells;
+  for (std::size_t c = 0; c < cut.cells(); ++c) {
+    if (cut.materials()[c] != number) continue;
+    for (int without = 0; without < 4; ++without) {
+      std::array<int, 3> facet{};
+      for (int i = 0, n = 0; i < 4; ++i)
+        if (i != without) facet[n++] = cut.tetrahedra()[c][i];
+      std::sort(facet.begin(), facet.end());
+      const auto is_on = [&](int n) { return std::abs(sphere.depth(cut.points()[n])) <= slack; };
+      if (std::all_of(facet.begin(), facet.end(), is_on)) ++cells[facet];
+    }
+  }
+  std::vector<std::array<int, 3>> facets;
+  for (const auto& [facet, count] : cells)
+    if (count == 1) facets.push_back(facet);
+  return facets;
+}
+
+/// Nodes between a region and one other material, not on the surface of the body.
+std::set<int> between_two(std::uint8_t number, const CutMesh& cut) {
+  std::map<int, std::set<std::uint8_t>> materials;
+  for (std::size_t c = 0; c < cut.cells(); ++c)
+    for (const int n : cut.tetrahedra()[c]) materials[n].insert(cut.materials()[c]);
+  std::set<int> nodes;
+  for (const auto& [n, at] : materials)
+    if (at.size() == 2 && at.contains(number) && cut.facets_at(n).empty()) nodes.insert(n);
+  return nodes;
+}
+
+/// Moves the nodes on the sphere of a region outwards, where nothing else ends, until its facets, which are chords,
+/// enclose the sphere's volume: the cones from the centre to the facets become as large as those to the sphere.
+void give_volume(const Border& sphere, std::uint8_t number, double slack, CutMesh& cut) {
+  double cones = 0, sectors = 0;
+  std::set<int> on;
+  for (const std::array<int, 3>& facet : facets_on(sphere, number, slack, cut)) {
+    Vec3 x[3];
+    for (int i = 0; i < 3; ++i) x[i] = (cut.points()[facet[i]] - sphere.point) / sphere.radius;
+    const double cone = std::abs(x[0].cross(x[1]).dot(x[2]));
+    cones += cone / 6;  // and of the solid angle (van Oosterom and Strackee 1983)
+    sectors += 2. / 3 * std::atan2(cone, 1 + x[0].dot(x[1]) + x[1].dot(x[2]) + x[2].dot(x[0]));
+    on.insert(facet.begin(), facet.end());
+  }
+  std::vector<int> nodes;
+  std::vector<Vec3> to;
+  const std::set<int> may_move = between_two(number, cut);
+  for (const int n : on) {
+    if (!may_move.contains(n)) continue;
+    nodes.push_back(n);
+    to.push_back(sphere.point + (cut.points()[n] - sphere.point) * std::cbrt(sectors / cones));
+  }
+  cut.move(nodes, to);
+}
+
 /// Of tetrahedra: the cells of one region, by its number, painted over those of earlier ones.
-void paint(const SolidShape& shape, std::uint8_t number, double coarseness, Mesh& mesh) {
+/// @return its volume, that in later regions too [m^3]
+double paint(const SolidShape& shape, std::uint8_t number, double coarseness, Mesh& mesh) {
   std::vector<std::string> patches;
   for (const Patch& p : mesh.patches) patches.push_back(p.name);
   CutMesh cut(mesh);
@@ -200,10 +258,17 @@ void paint(const SolidShape& shape, std::uint8_t number, double coarseness, Mesh
   if (std::isfinite(shape.across)) into.refine(shape.across / edges_across * coarseness);
   into.along_borders();
   std::vector<std::uint8_t> materials = cut.materials();
+  std::vector<Eigen::Index> held;
   for (std::size_t c = 0; c < cut.cells(); ++c)
-    if (materials[c] < number && into.holds(cut.tetrahedra()[c])) materials[c] = number;
+    if (into.holds(cut.tetrahedra()[c])) {
+      held.push_back(static_cast<Eigen::Index>(c));
+      materials[c] = std::max(materials[c], number);
+    }
   cut.set_materials(std::move(materials));
+  for (const Border& border : shape.borders)
+    if (border.is_sphere()) give_volume(border, number, on_border * extent_of(mesh), cut);
   mesh = cut.mesh(patches);
+  return cell_volumes(mesh, mesh.nodes)(held).sum();
 }
 
 /// Of hexahedra: those in the shape.
@@ -234,18 +299,19 @@ std::optional<SolidShape> shape_in(const MaterialRegion& region) {
 }
 
 /// Marks one region, by its number.
+/// @return its volume before later regions are painted over it [m^3]
 /// @throws InputError if its border runs through hexahedra
-void mark_one(const MaterialRegion& region, std::uint8_t number, double coarseness, Mesh& mesh) {
+double mark_one(const MaterialRegion& region, std::uint8_t number, double coarseness, Mesh& mesh) {
   const std::optional<SolidShape> shape = shape_in(region);
-  if (!shape) return;
-  if (!mesh.tetrahedra.empty()) return paint(*shape, number, coarseness, mesh);
-  if (const std::size_t cut = paint_whole(*shape, number, mesh))
+  if (shape && !mesh.tetrahedra.empty()) return paint(*shape, number, coarseness, mesh);
+  if (const std::size_t cut = shape ? paint_whole(*shape, number, mesh) : 0)
     throw InputError(
         region.where,
         fmt::format("region: the border of '{}' runs through {} of {} cells of a grid (allowed: borders along "
                     "the lines of every grid, those of the reference too; or a body of voxels, whose "
                     "tetrahedra are cut)",
                     region.name, cut, mesh.hexahedra.size()));
+  return volumes_by_material(mesh, std::numeric_limits<std::uint8_t>::max())[number];
 }
 
 /// @throws InputError for a region without cells
@@ -261,7 +327,7 @@ void refuse_without_cells(const MaterialRegion& region, bool covered, const Mesh
 /// A region's share of the body, and what else is worth knowing.
 /// @param own, alone its volume, and that before later regions were painted over it [m^3]
 std::string share_note(const MaterialRegion& region, double own, double alone, double whole) {
-  constexpr double least = 0.05;  // of a shape's volume: chords of a ball take less
+  constexpr double least = 0.01;  // of a shape's volume: a ball's facets miss less
   std::string note = fmt::format("region '{}' is {:.4g} % of the body", region.name, 100 * own / whole);
   if (own >= (1 - on_border) * whole) note += ": [material] is not used";
   if (own < (1 - on_border) * alone)
@@ -277,10 +343,8 @@ std::vector<std::string> mark_regions(const std::vector<MaterialRegion>& regions
   if (regions.empty()) return {};
   mesh.materials.resize(mesh.hexahedra.size() + mesh.tetrahedra.size(), 0);
   std::vector<double> alone;
-  for (std::size_t r = 0; r < regions.size(); ++r) {
-    mark_one(regions[r], static_cast<std::uint8_t>(r + 1), coarseness, mesh);
-    alone.push_back(volumes_by_material(mesh, regions.size())[r + 1]);
-  }
+  for (std::size_t r = 0; r < regions.size(); ++r)
+    alone.push_back(mark_one(regions[r], static_cast<std::uint8_t>(r + 1), coarseness, mesh));
   const std::vector<double> volumes = volumes_by_material(mesh, regions.size());
   std::vector<std::string> notes;
   for (std::size_t r = 0; r < regions.size(); ++r) {

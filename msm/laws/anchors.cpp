@@ -1,5 +1,7 @@
 #include "msm/laws/anchors.h"
 
+#include "msm/laws/turned_bond.h"
+
 namespace springproof {
 namespace {
 
@@ -11,14 +13,28 @@ Vec3 stretch(const Anchor& a, const NodalVectors& x) {
   return d;
 }
 
+/// K += the tangent of a bond that turns: of w = K v, and of how v depends on the positions.
+void add_tangent_of(const TurnedBond& at, const Eigen::Matrix3d& stiffness, BlockMatrix& K) {
+  const Vec3 w = stiffness * at.v();
+  const Eigen::Matrix<double, 1, 16> along = w.transpose() * at.frame;
+  std::array<Eigen::Matrix3d, 16> slope;  // of v
+  for (int n = 0; n < 16; ++n) slope[n] = at.weights[n] * at.F.transpose() + at.frame.col(n) * at.gap.transpose();
+  for (int m = 0; m < 16; ++m)
+    for (int n = 0; n < 16; ++n) {
+      const double turned = at.weights[m] * along[n] + at.weights[n] * along[m];
+      K.add(at.nodes[m], at.nodes[n],
+            slope[m].transpose() * stiffness * slope[n] + turned * Eigen::Matrix3d::Identity());
+    }
+}
+
 }  // namespace
 
 double Anchors::energy(const Network& network, const NodalVectors& x) const {
   double sum = 0;
   for (const Anchor& a : network.anchors) sum += a.stiffness / 2 * stretch(a, x).squaredNorm();
   for (const InterfaceBond& b : network.bonds) {
-    const Vec3 g = gap(b, x);
-    sum += g.dot(b.stiffness * g) / 2;
+    const Vec3 v = turns(b) ? TurnedBond(b, network.X, x).v() : gap(b, x);
+    sum += v.dot(b.stiffness * v) / 2;
   }
   return sum;
 }
@@ -30,12 +46,17 @@ void Anchors::add_forces(const Network& network, const NodalVectors& x, NodalVec
     for (int n = 0; n < 8; ++n) f.row(a.corners[n]) -= a.weights[n] * force.transpose();
   }
   for (const InterfaceBond& b : network.bonds) {
+    if (turns(b)) {
+      const TurnedBond at(b, network.X, x);
+      at.for_each_gradient(b.stiffness * at.v(), [&](int node, const Vec3& g) { f.row(node) -= g.transpose(); });
+      continue;
+    }
     const Vec3 force = b.stiffness * gap(b, x);
     for_each_corner(b, [&](int node, double weight) { f.row(node) -= weight * force.transpose(); });
   }
 }
 
-void Anchors::add_tangent(const Network& network, const NodalVectors&, BlockMatrix& K) const {
+void Anchors::add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const {
   for (const Anchor& a : network.anchors) {
     Eigen::Matrix3d I = Eigen::Matrix3d::Zero();
     for (int axis = 0; axis < 3; ++axis) I(axis, axis) = a.acts(axis);
@@ -47,8 +68,11 @@ void Anchors::add_tangent(const Network& network, const NodalVectors&, BlockMatr
     }
   }
   for (const InterfaceBond& b : network.bonds)
-    for_each_corner(
-        b, [&](int m, double v) { for_each_corner(b, [&](int n, double w) { K.add(m, n, v * w * b.stiffness); }); });
+    if (turns(b))
+      add_tangent_of({b, network.X, x}, b.stiffness, K);
+    else
+      for_each_corner(
+          b, [&](int m, double v) { for_each_corner(b, [&](int n, double w) { K.add(m, n, v * w * b.stiffness); }); });
 }
 
 }  // namespace springproof

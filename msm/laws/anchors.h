@@ -9,7 +9,8 @@
 namespace springproof {
 
 /// Energy sum k/2 |sum_a w_a x_a - x_node|^2 over Network::anchors and sum g.K g/2 over Network::bonds: springs of rest
-/// length zero, so the energy is quadratic, and the same in every frame where K is a multiple of 1.
+/// length zero, so the energy is quadratic, but of bonds that turn (turned_bond.h).  That of bonds is the same in every
+/// frame.
 struct Anchors {
   /// What solvers, kernels and the time step use of this law.
   static constexpr LawTraits traits = {

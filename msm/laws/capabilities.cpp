@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "msm/laws/turned_bond.h"
+
 namespace springproof {
 namespace {
 
@@ -87,6 +89,7 @@ std::string lacks(const Network& network, Capability what) {
       if (periodic || !network.triangles.empty()) return "its network is periodic or planar";
       return cells.cut() || cells.kind() == CellKind::boxes ? "its cells are cut, or boxes" : "";
     case cell_kernels:
+      if (std::any_of(network.bonds.begin(), network.bonds.end(), turns)) return "its bonds turn with their cells";
       return !cells.empty() && !periodic ? "" : "its network has no cells, or is periodic";
     case list_stiffness:
       return springs_at_rest(network) ? "" : "its springs have tension at rest";

@@ -50,14 +50,12 @@ std::optional<std::pair<std::string, SourceLocation>> of_one_material(const Expe
   const auto says = [&](const char* what, const char* allowed) {
     return std::pair{fmt::format("region: '{}': {} (allowed: {})", e.regions.front().name, what, allowed), region};
   };
-  if (e.dynamics)
-    return {{"dynamics: bodies of several materials are not moved (allowed: equilibria)", e.dynamics->where}};
   if (e.reference.smooth) return says("strains jump where materials meet", "smooth = false in [reference]");
   if (std::find(e.measures.begin(), e.measures.end(), "promised_error") != e.measures.end())
     return says("strains jump where materials meet, which promised_error takes for an error", "other measures");
   if (e.parts) return says("the parts of errors are of one material", "no parts in [compare]");
   if (e.fracture) return says("drying bodies are of one material", "no [fracture]");
-  if (e.kinematics != "linear") return says("large strain is of one material", "kinematics = \"linear\"");
+  if (e.relaxation.acts()) return says("relaxation is of one material", "no [material.relaxation]");
   if (e.line || !e.exact.empty()) return says("exact fields are of one material", "no [line] and no exact");
   for (const Load& load : e.loads)
     if (std::holds_alternative<FieldBodyForce>(load) || std::holds_alternative<PrescribedField>(load))

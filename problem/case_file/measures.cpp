@@ -104,6 +104,14 @@ std::vector<std::string> region_rows(const Experiment& experiment) {
   return rows;
 }
 
+std::vector<std::string> interface_rows(const Experiment& experiment) {
+  std::vector<std::string> rows;
+  for (std::size_t r = 0; r < experiment.regions.size(); ++r)
+    for (std::size_t other = 0; other <= r; ++other)
+      add_vector_rows(interface_of(experiment.regions, static_cast<int>(r + 1), static_cast<int>(other)), rows);
+  return rows;
+}
+
 std::vector<std::string> network_rows(const Experiment&) {
   return {"network.nodes", "network.springs", "network.springs_per_node", "network.mean_length",
           "network.length_deviation"};
@@ -209,6 +217,8 @@ const std::vector<Measure>& measure_table() {
     {"stress", value, {{"stress", "Pa"}}, "stress.PROBE.xx|yy|zz|xy|yz|xz [Pa], finite elements only", "", "", stress_rows},
     {"region", value, {{"region", "1"}}, "region.REGION.volume_change, .mean_stress.xx|yy|zz|xy|yz|xz and .pressure [Pa], .displacement.x|y|z|magnitude [m] in the mean, .energy [J] of a [[region]]",
      "", "", region_rows},
+    {"interface", value, {{"interface", "N"}}, "interface.REGION.OTHER.force.x|y|z|magnitude, force on a region by another, named earlier, or by the `body`'s own material [N]",
+     "", "", interface_rows},
     {"motion", value, {{"motion.period", "s"}, {"motion.amplitude", "m"}, {"motion.arrival", "s"}, {"motion.contact_time", "s"}, {"motion", "1"}},
      "of a motion: period [s], amplitude [m], of a pulse arrival [s] of the first probe; of a damped one damping_ratio; on a plane contact_time [s] and restitution; energy_drift, momentum_drift, angular_momentum_drift, inertia_excess of free bodies", "", "", motion_rows},
     {"motion_error", distance, {{"motion_error", "1"}},
@@ -243,6 +253,10 @@ std::string quantity_of_region(const std::string& row) {
       found = quantity.substr(1);
     }
   return found;
+}
+
+std::string interface_of(const std::vector<MaterialRegion>& regions, int region, int other) {
+  return "interface." + regions[region - 1].name + '.' + (other == 0 ? "body" : regions[other - 1].name) + ".force";
 }
 
 std::string unit_of(const std::string& row) {

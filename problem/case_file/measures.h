@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "problem/region.h"
+
 namespace springproof {
 
 struct Experiment;
@@ -43,6 +45,9 @@ const Measure* measure_of(const std::string& row);
 
 /// "volume_change", "mean_stress", "pressure", "displacement" or "energy" of a row of a region; of others "".
 std::string quantity_of_region(const std::string& row);
+
+/// "interface.REGION.OTHER.force", of numbers in Mesh::materials.
+std::string interface_of(const std::vector<MaterialRegion>& regions, int region, int other);
 
 /// "m", "Pa", "N", "N m", "J", "J/m2", "1/m" or "1".
 std::string unit_of(const std::string& row);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 
 #include "problem/material.h"
@@ -59,6 +60,29 @@ inline Mesh ball_in_cube(int across, const Vec3& centre) {
   for (const Tetrahedron& t : body.tetrahedra)
     out.materials.push_back(inside[t[0]] && inside[t[1]] && inside[t[2]] && inside[t[3]]);
   return out;
+}
+
+/// A part of a rod that moves along itself alone.
+struct RodPart {
+  double modulus;  ///< [Pa]
+  double density;  ///< [kg/m^3]
+  double length;   ///< [m]
+};
+
+/// First natural frequency [Hz] of a rod of two parts, the first of which is held at its end: tan(w L1/c1) tan(w L2/c2)
+/// = Z1/Z2, c^2 = modulus / density, Z^2 = modulus * density.
+inline double first_frequency(const RodPart& held, const RodPart& free) {
+  constexpr double pi = 3.14159265358979323846;
+  const auto time = [](const RodPart& p) { return p.length * std::sqrt(p.density / p.modulus); };
+  const auto impedance = [](const RodPart& p) { return std::sqrt(p.modulus * p.density); };
+  double low = 0, high = pi / 2 / std::max(time(held), time(free));
+  for (int step = 0; step < 100; ++step) {
+    const double w = (low + high) / 2;
+    const bool below = impedance(free) * std::sin(w * time(held)) * std::sin(w * time(free)) <
+                       impedance(held) * std::cos(w * time(held)) * std::cos(w * time(free));
+    (below ? low : high) = w;
+  }
+  return low / (2 * pi);
 }
 
 /// A ball of radius 1 about zero in an unbounded body under a strain far away (Eshelby 1957).

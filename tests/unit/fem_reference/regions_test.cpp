@@ -1,10 +1,12 @@
 // Bodies of several materials: exact in series and in parallel, pressures that jump, contrast that costs nothing.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
 
 #include "fem_reference/solve_grid.h"
 #include "support/fem_block.h"
+#include "support/two_materials.h"
 
 namespace springproof::fem_regions_test {
 namespace {
@@ -61,6 +63,8 @@ TEST_P(FemRegions, InSeriesAreExactAtAnyContrast) {
       ASSERT_EQ(s.regions.size(), 1u);
       EXPECT_NEAR(s.regions[0].stress(0, 0) / -10, 1, 1e-6);
       EXPECT_NEAR(s.regions[0].stress(0, 1), -10 * nu / (1 - nu), 1e-5);
+      ASSERT_EQ(s.interfaces.size(), 1u);
+      EXPECT_NEAR(s.interfaces[0].force[0], 10, 1e-5);            // the first half bears the second
       EXPECT_NEAR(s.regions[0].volume_change / beyond, 1, 5e-5);  // 1e4 x residual
       EXPECT_NEAR(s.regions[0].displacement[0] / (at_middle + beyond / 2), 1, 1e-6);
       EXPECT_NEAR(s.regions[0].energy / (5 * -beyond), 1, 5e-5);
@@ -79,11 +83,139 @@ TEST_P(FemRegions, InParallelShareTheForceByTheirModuli) {
   EXPECT_NEAR(s.reactions[1].force[0] / (0.005 * (1e4 + 1e7) / 2), 1, 1e-6) << s.form;
 }
 
+/// Uniaxial strain to the stretch l in a wall without friction: first Piola-Kirchhoff stress, and energy per volume.
+struct Confined {
+  double stress, energy;
+
+  Confined(const std::string& law, const IsotropicMaterial& m, double l) {
+    const double log_l = std::log(l), mu = shear_modulus(m), lambda = lame_lambda(m);
+    stress = confined_modulus(m) * log_l / l;
+    energy = confined_modulus(m) / 2 * log_l * log_l;
+    if (law == "hencky") return;
+    stress = mu * (l - 1 / l) + lambda * log_l / l;
+    energy = mu / 2 * (l * l - 1 - 2 * log_l) + lambda / 2 * log_l * log_l;
+  }
+};
+
+/// Stretches of two halves in series whose mean is given.
+std::pair<double, double> in_series(const std::string& law, const IsotropicMaterial& first,
+                                    const IsotropicMaterial& second, double mean) {
+  double low = std::max(0.01, 2 * mean - 2),
+         high = std::min(2 * mean - 0.01, 2.0);  // stress rises up to a stretch of e
+  for (int step = 0; step < 200; ++step) {
+    const double l = (low + high) / 2;
+    (Confined(law, first, l).stress < Confined(law, second, 2 * mean - l).stress ? low : high) = l;
+  }
+  return {low, 2 * mean - low};
+}
+
+TEST_P(FemRegions, InSeriesAreExactAtLargeStrain) {
+  for (const auto& [law, mean] : {std::pair("hencky", 0.8), std::pair("neo_hooke", 1.2)})
+    for (const auto& [contrast, nu] : {std::pair(1e-2, 0.0), std::pair(1e4, 0.499)}) {
+      const IsotropicMaterial first{1e4, 0.3, 1000}, second{contrast * 1e4, nu, 1000};
+      fem::GridProblem problem = bar(GetParam(), 0, first, second);
+      problem.law = law;
+      problem.loads = confined(0);
+      problem.loads[1] = PrescribedDisplacement{"x_max", {2 * (mean - 1), is_free, is_free}};
+      problem.points = NodalVectors(1, 3);
+      problem.points << 1, 0.5, 0.5;
+      const fem::Solution s = fem::solve_grid(problem);
+      ASSERT_TRUE(s.ok) << s.message << " " << s.form << contrast << " " << nu;
+      const auto [a, b] = in_series(law, first, second, mean);
+      const Confined at(law, second, b);
+      EXPECT_NEAR(s.displacement(0, 0), a - 1, 1e-6) << contrast << " " << nu << " " << s.form;
+      EXPECT_NEAR(s.reactions[1].force[0] / at.stress, 1, 1e-6) << law << mean << contrast << " " << nu;
+      ASSERT_EQ(s.regions.size(), 1u);
+      EXPECT_NEAR(s.regions[0].stress(0, 0) / at.stress, 1, 1e-5);  // the area stays what it is
+      EXPECT_NEAR(s.regions[0].volume_change, b - 1, 1e-6);
+      EXPECT_NEAR(s.interfaces.at(0).force[0] / -at.stress, 1, 1e-5);
+      EXPECT_NEAR(s.regions[0].energy / at.energy, 1, 1e-4) << law << mean << contrast << " " << nu;
+    }
+}
+
+TEST_P(FemRegions, InParallelShareTheForceAtLargeStrain) {
+  const IsotropicMaterial first{1e4, 0.45, 1000}, second{1e7, 0.45, 1000};
+  fem::GridProblem problem = bar(GetParam(), 2, first, second);
+  problem.law = "hencky";
+  problem.loads = {PrescribedDisplacement{"x_min", {0.0, is_free, is_free}},
+                   PrescribedDisplacement{"x_max", {0.4, is_free, is_free}},
+                   PrescribedDisplacement{"y_min", {is_free, 0.0, is_free}},
+                   PrescribedDisplacement{"z_min", {is_free, is_free, 0.0}}};
+  const fem::Solution s = fem::solve_grid(problem);
+  ASSERT_TRUE(s.ok) << s.message;
+  EXPECT_NEAR(s.reactions[1].force[0] / ((1e4 + 1e7) / 2 * std::log(1.2) / 1.2), 1, 1e-6) << s.form;
+  EXPECT_NEAR(s.regions[0].stress(0, 0) / (1e7 * std::log(1.2) / std::pow(1.2, 1 - 2 * 0.45)), 1, 1e-6);
+}
+
 TEST_P(FemRegions, WeighWhatTheirDensitiesAre) {
   fem::GridProblem problem = bar(GetParam(), 0, {1e4, 0.3, 1000}, {1e4, 0.3, 3000});
   problem.loads = {PrescribedDisplacement{"x_min", {0.0, 0.0, 0.0}}, Gravity{{0, 0, -10}}};
   const fem::Solution s = fem::solve_grid(problem);
   EXPECT_NEAR(s.reactions[0].force[2], 4e4, 1e-3);
+}
+
+/// In a wall without friction.
+double first_frequency_of(const fem::GridProblem& bar) {
+  return test::first_frequency({confined_modulus(bar.material), bar.material.density, 1},
+                               {confined_modulus(bar.regions[0]), bar.regions[0].density, 1});
+}
+
+TEST_P(FemRegions, VibrateAsRodsOfTwoParts) {
+  for (const IsotropicMaterial& second : {IsotropicMaterial{1e6, 0.3, 3000}, {1e6, 0.499, 500}, {2e3, 0.2, 2000}}) {
+    fem::GridProblem problem = bar(GetParam(), 0, {1e4, 0.3, 1000}, second);
+    problem.loads = confined(0);
+    problem.loads.erase(problem.loads.begin() + 1);
+    problem.modes = 8;
+    problem.points = problem.coarse.nodes;
+    const fem::Solution s = fem::solve_grid(problem);
+    ASSERT_TRUE(s.ok) << s.message;
+    const double expected = first_frequency_of(problem);
+    double nearest = 0;
+    for (const double f : s.frequencies)
+      if (std::abs(f - expected) < std::abs(nearest - expected)) nearest = f;
+    EXPECT_NEAR(nearest / expected, 1, problem.degree == 2 ? 1e-4 : 0.01) << second.youngs_modulus;
+  }
+}
+
+TEST_P(FemRegions, SwingInTheirPeriod) {
+  for (const double nu : {0.3, 0.499}) {
+    fem::GridProblem problem = bar(GetParam(), 0, {1e4, 0.3, 1000}, {1e6, nu, 3000});
+    problem.law = "hencky";
+    problem.loads = confined(10);
+    const double period = 1 / first_frequency_of(problem);
+    problem.motion = fem::MotionRequest{period, 0, {}, true};
+    problem.steps = 100;
+    problem.points = NodalVectors(1, 3);
+    problem.points << 2, 0.5, 0.5;
+    const fem::Solution s = fem::solve_grid(problem);
+    ASSERT_TRUE(s.ok) << s.message;
+    std::vector<double> crossings;
+    for (std::size_t i = 1; i < s.path.size(); ++i) {
+      const double before = s.path[i - 1](0, 0), now = s.path[i](0, 0);
+      if (before * now < 0) crossings.push_back(s.time[i - 1] + (s.time[i] - s.time[i - 1]) * before / (before - now));
+    }
+    ASSERT_EQ(crossings.size(), 2u);
+    EXPECT_NEAR(2 * (crossings[1] - crossings[0]) / period, 1, 0.01) << nu;
+  }
+}
+
+TEST_P(FemRegions, KeepEnergyAndMomentaInFlight) {
+  fem::GridProblem problem = bar(GetParam(), 0, {1e4, 0.3, 1000}, {1e5, 0.49, 3000});
+  problem.law = "hencky";
+  problem.motion = fem::MotionRequest{.duration = 0.5, .velocity = {1, 0, 0}, .spin = {0, 0, 2}};
+  problem.motion->energy_momentum = true;
+  problem.steps = 20;
+  problem.points = NodalVectors(0, 3);
+  const fem::Solution s = fem::solve_grid(problem);
+  ASSERT_TRUE(s.ok) << s.message;
+  // Cubes of 1000 and 3000 kg, 0.75 and 0.25 m from the centre of mass.
+  const double inertia = 4000 / 6. + 1000 * 0.75 * 0.75 + 3000 * 0.25 * 0.25;
+  EXPECT_NEAR(s.kinetic_energy[0], (4000 + inertia * 4) / 2, 1e-6);
+  for (std::size_t i = 0; i < s.time.size(); ++i) {
+    EXPECT_NEAR(s.kinetic_energy[i] + s.elastic_energy[i], s.kinetic_energy[0], 1e-6 * s.kinetic_energy[0]);
+    EXPECT_LT((s.angular_momentum[i] - s.angular_momentum[0]).norm(), 1e-6 * s.angular_momentum[0].norm());
+  }
+  EXPECT_GT(s.elastic_energy.back(), 1e-3 * s.kinetic_energy[0]);
 }
 
 TEST_P(FemRegions, OfOneMaterialAreNone) {

@@ -71,15 +71,23 @@ TEST(Regions, CutABoxExactly) {
   EXPECT_WORDS(notes.at(0), "region 'part' is 12.69 % of the body");
 }
 
-TEST(Regions, CutABallByChordsThatConverge) {
-  Mesh coarse = cube(), fine = halved(cube());
-  mark_regions({region(ball)}, 1, coarse);
-  mark_regions({region(ball)}, 0.5, fine);
+TEST(Regions, CutABallByFacetsOfItsVolume) {
   const double exact = 4 * std::numbers::pi / 3 * std::pow(ball.radius, 3);
-  EXPECT_LT(volume_of(coarse, 1), exact);
-  EXPECT_LT(exact - volume_of(fine, 1), 0.4 * (exact - volume_of(coarse, 1)));
-  EXPECT_LT(exact - volume_of(fine, 1), 0.03 * exact);
-  EXPECT_EQ(facets_of_one_cell(fine), outer_facets(fine).size());
+  for (const double coarseness : {2.25, 1.5, 1.0, 0.5}) {
+    Mesh mesh = coarseness < 1 ? halved(cube()) : cube();
+    mark_regions({region(ball)}, coarseness, mesh);
+    EXPECT_NEAR(volume_of(mesh, 1), exact, 1e-9 * exact) << coarseness;
+    EXPECT_EQ(facets_of_one_cell(mesh), outer_facets(mesh).size());
+    EXPECT_GT(quality_of(mesh).worst, 0.01);
+  }
+}
+
+TEST(Regions, CutHalfABallByFacetsOfItsVolume) {
+  Mesh mesh = cube();
+  mark_regions({region(PatchRule::Near{{0.5, 0.45, 0}, 0.3})}, 1, mesh);
+  const double exact = 2 * std::numbers::pi / 3 * std::pow(0.3, 3);
+  EXPECT_NEAR(volume_of(mesh, 1), exact, 0.015 * exact);
+  EXPECT_NEAR(nodal_areas(mesh, patch(mesh, "z_min")).sum(), 1, 1e-12);
 }
 
 TEST(Regions, CutAHalfSpaceAndLaterOnesLieOver) {
@@ -90,6 +98,18 @@ TEST(Regions, CutAHalfSpaceAndLaterOnesLieOver) {
   EXPECT_NEAR(volume_of(mesh, 1), 0.63 - common, 1e-12);
   EXPECT_NEAR(volume_of(mesh, 2), (box.high - box.low).prod(), 1e-12);
   EXPECT_WORDS(notes.at(0), "% of it lies in later regions");
+}
+
+TEST(Regions, SayWhatOfThemLiesInALaterPhysicalVolume) {
+  Mesh mesh = cube();
+  for (const Tetrahedron& t : mesh.tetrahedra) {
+    double z = 0;
+    for (const int n : t) z += mesh.nodes(n, 2) / 4;
+    mesh.materials.push_back(z > 0.4 ? 2 : 0);
+  }
+  const auto notes = mark_regions({region(box), region("upper")}, 1, mesh);
+  EXPECT_WORDS(notes.at(0), "% of it lies in later regions");
+  EXPECT_EQ(notes.at(0).find("outside"), std::string::npos) << notes.at(0);
 }
 
 TEST(Regions, StayWhenPatchesAreCutThroughThem) {

@@ -14,7 +14,7 @@ namespace {
 const IsotropicMaterial material{1e4, 0.4, 1100};
 
 /// Round bars of two cells, lying anyhow; of the second and fourth some cells are halved once or twice, and the third
-/// and fourth are of two materials.
+/// to fifth are of two materials, of which the fifth has bonds that turn.
 std::vector<MassSpringModel> bars() {
   const double edge = 0.5;
   const Mesh body = test::mapped(test::cylinder(3, 8, 12), test::random_placement(2, edge));
@@ -29,6 +29,8 @@ std::vector<MassSpringModel> bars() {
         build_cut(test::model("hybmss_avg"), cut_body(g, both), {}, Mesh{}, material, {{2e4, 0.3, 3000}}).model);
     soften_bonds(bars.back(), material.density);
   }
+  bars.push_back(
+      build_cut(test::model("hybmss_avg"), cut_body(grid, both), {}, Mesh{}, material, {{2e4, 0.49, 3000}}).model);
   EXPECT_GT(bars[1].network.cells.carried.size(), 50u);
   EXPECT_GT(bars[3].network.bonds.size(), 20u);
   return bars;

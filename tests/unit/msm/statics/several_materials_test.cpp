@@ -239,17 +239,26 @@ TEST(SeveralMaterials, HaveTheForcesOfTheirEnergy) {
   EXPECT_LE((Kd - change).norm(), test::finite_difference * Kd.norm());
 }
 
-/// Force at the end of a bar that is pulled to 1.2 of its length, its sides free.
-double force_at_large_strain(const MassSpringModel& model) {
+TEST(SeveralMaterials, TurnAsABody) {
+  const MassSpringModel model = model_of(cut_layers(0, 1.3), {{1, 0.3, 1}, {20, 0.499, 1}});
+  const NodalVectors x = model.network.X + test::noise(model.network.nodes(), 0.1, 1);
+  const Eigen::Matrix3d R = Eigen::AngleAxisd(1.2, Vec3(1, 2, -1).normalized()).toRotationMatrix();
+  EXPECT_NEAR(energy(model, x * R.transpose()), energy(model, x), 1e-12 * energy(model, x));
+  const NodalVectors f = forces(model, x);
+  EXPECT_LE((forces(model, x * R.transpose()) - f * R.transpose()).norm(), 1e-12 * f.norm());
+}
+
+/// Force at the end of a bar that is pulled to `stretch` times its length, its sides free or, if `confined`, held.
+double force_at_large_strain(const MassSpringModel& model, bool confined, double stretch) {
   const Network& network = model.network;
   const LoadPath pulled = [&](double factor) {
     BoundaryConditions bc = no_conditions(network);
     for (int n = 0; n < network.nodes(); ++n) {
       const Vec3 x = network.X.row(n).transpose();
-      for (int axis = 0; axis < 3; ++axis) bc.fixed[3 * n + axis] = x[axis] < 1e-9;
+      for (int axis = 0; axis < 3; ++axis) bc.fixed[3 * n + axis] = x[axis] < 1e-9 || (confined && axis > 0);
       if (x[0] < length - 1e-9) continue;
       bc.fixed[3 * n] = 1;
-      bc.prescribed(n, 0) = 0.2 * factor * length;
+      bc.prescribed(n, 0) = (stretch - 1) * factor * length;
     }
     return bc;
   };
@@ -263,9 +272,86 @@ double force_at_large_strain(const MassSpringModel& model) {
 
 TEST(SeveralMaterials, AreExactInParallelAtLargeStrain) {
   const IsotropicMaterial soft{1, 0.3, 1}, stiff{20, 0.3, 1};
-  const double one = force_at_large_strain(model_of(cut_layers(2, 1.3), {soft, soft})),
-               both = force_at_large_strain(model_of(cut_layers(2, 1.3), {soft, stiff}));
+  const double one = force_at_large_strain(model_of(cut_layers(2, 1.3), {soft, soft}), false, 1.2),
+               both = force_at_large_strain(model_of(cut_layers(2, 1.3), {soft, stiff}), false, 1.2);
   EXPECT_NEAR(both, (1.3 + 20 * 0.7) / 2 * one, 1e-7 * both);
+}
+
+/// Stretch of a confined neo-Hookean solid under a first Piola-Kirchhoff stress.
+double stretch_at(double stress, const IsotropicMaterial& m) {
+  double low = 0.1, high = 2;
+  for (int step = 0; step < 100; ++step) {
+    const double l = (low + high) / 2;
+    (shear_modulus(m) * (l - 1 / l) + lame_lambda(m) * std::log(l) / l < stress ? low : high) = l;
+  }
+  return low;
+}
+
+/// A bar of two layers between walls without friction: its stress where it is pulled to a stretch.
+double stress_between_walls(const CutBody& cut, const IsotropicMaterial& a, const IsotropicMaterial& b,
+                            double stretch) {
+  MassSpringModel model = model_of(cut, {a, b});
+  AveragedSprings& law = *law_of<AveragedSprings>(model);
+  law.curve = law.regions[0].curve = StrainCurve::neo_hooke;
+  return force_at_large_strain(model, true, stretch) / 4;
+}
+
+// An interface gives way as at small strain.
+TEST(SeveralMaterials, InSeriesGiveWayAsTheirBondsAtLargeStrain) {
+  for (const double contrast : {1e-2, 1.0, 1e4})
+    for (const double stretch : {0.8, 1.2}) {
+      const IsotropicMaterial a{1, 0, 1}, b{contrast, 0.4, 1};
+      const double at = 1.3, stress = stress_between_walls(cut_layers(0, at), a, b, stretch),
+                   bonds = stress / anchor_stiffness * (1 / a.youngs_modulus + 1 / b.youngs_modulus) / 2;
+      EXPECT_NEAR(at * stretch_at(stress, a) + (length - at) * stretch_at(stress, b) + bonds, stretch * length, 1e-6)
+          << contrast << ' ' << stretch;
+    }
+}
+
+// Bonds that are stiffer across the interface give way less.
+TEST(SeveralMaterials, NearlyIncompressibleOnesAreInSeriesAtLargeStrain) {
+  for (const double stretch : {0.8, 1.2}) {
+    const IsotropicMaterial a{1, 0.3, 1}, b{1, 0.499, 1};
+    const double at = 2.5, stress = stress_between_walls(cut_layers(0, at), a, b, stretch);
+    EXPECT_NEAR(at * stretch_at(stress, a) + (length - at) * stretch_at(stress, b), stretch * length, 0.005 * length);
+  }
+}
+
+// Whose forces the rounding of positions changes by more than the tolerance of Newton's method.
+TEST(SeveralMaterials, ConvergeUnderSmallLoadsAtHighContrast) {
+  const CutBody cut = cut_body({Vec3::Zero(), 1, {8, 2, 2}}, test::layered_block({8, 2, 2}, {8, 2, 2}, 0, 4));
+  const MassSpringModel model = model_of(cut, {{1, 0, 1}, {1e4, 0, 1}});
+  const Network& network = model.network;
+  const LoadPath pulled = [&](double factor) {
+    BoundaryConditions bc = no_conditions(network);
+    for (int n = 0; n < network.nodes(); ++n) {
+      for (int axis = 0; axis < 3; ++axis) bc.fixed[3 * n + axis] = network.X(n, 0) < 1e-9;
+      if (network.X(n, 0) > 8 - 1e-9) bc.external(n, 0) = 1e-5 * factor;
+    }
+    return bc;
+  };
+  const Equilibrium e = solve_finite(model, pulled);
+  ASSERT_TRUE(e.ok) << e.message;
+  EXPECT_NEAR(e.displacement.col(0).maxCoeff(), 9e-5 / 4 * (4 + 4e-4), 1e-8);
+}
+
+TEST(SeveralMaterials, VibrateAsRodsOfTwoParts) {
+  const double t = 0.25, at = 1.8;
+  const CutBody cut = cut_body({Vec3::Zero(), t, {16, 1, 1}}, test::layered_block({length, t, t}, {16, 1, 1}, 0, at));
+  for (const IsotropicMaterial& free : {IsotropicMaterial{1, 0.3, 1}, {1e4, 0.3, 3}, {1e-2, 0, 1}, {10, 0.499, 2}}) {
+    const IsotropicMaterial held{1, 0.3, 1};
+    const MassSpringModel model = model_of(cut, {held, free});
+    std::vector<char> fixed(model.network.X.size());
+    for (int n = 0; n < model.network.nodes(); ++n) {
+      fixed[3 * n] = model.network.X(n, 0) < 1e-9;
+      fixed[3 * n + 1] = fixed[3 * n + 2] = 1;
+    }
+    const NaturalModes modes = natural_modes(model, fixed, held.density, 0, 1);
+    ASSERT_TRUE(modes.ok) << modes.message;
+    const double expected = test::first_frequency({confined_modulus(held), held.density, at},
+                                                  {confined_modulus(free), free.density, length - at});
+    EXPECT_NEAR(modes.frequencies.front() / expected, 1, 0.005) << free.youngs_modulus;
+  }
 }
 
 TEST(SeveralMaterials, AreRefusedByWhatKnowsOne) {
