@@ -53,7 +53,6 @@ Experiment read_case(const std::string& name) {
     throw InputError(
         experiment.relaxation_where,
         "material.relaxation: has no place in exported files, whose springs would not relax (allowed: none)");
-  require_one_material(experiment, "export");
   return experiment;
 }
 
@@ -76,6 +75,7 @@ int export_calculix(const ExportRequest& request) {
       !request.hold.empty() || !request.load.empty())
     throw InputError("--to calculix: a deck has the case's elements and material (allowed: --poisson-ratio, --cells)");
   const Experiment experiment = read_case(request.what);
+  require_one_material(experiment, "export --to calculix");
   calculix::require_counterpart(experiment);
   const IsotropicMaterial material = material_of(experiment, request.moduli.poisson_ratio);
   const std::string file = request.out.empty() ? experiment.name + ".inp" : request.out;
@@ -179,6 +179,7 @@ Mesh carried_vertices(const ExportRequest& request, const PreparedCase& prepared
 /// `cut`: of cut cells where the model has them and the case does not say otherwise.
 SpringsFile springs_of(const ExportRequest& request, bool cut = false) {
   const Experiment of_case = is_body(request.what) ? Experiment() : read_case(request.what);
+  if (!cut) require_one_material(of_case, fmt::format("export --to {} of whole cubes", request.to));
   Experiment e = is_body(request.what) ? body_alone(request) : one_of_each(of_case, request);
   if (!request.cells.empty()) {
     if (e.body.is_voxels()) throw InputError("--cells: is for bodies of hexahedra; this one has --voxels N");
