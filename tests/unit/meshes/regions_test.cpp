@@ -16,6 +16,7 @@
 #include "meshes/volume.h"
 #include "problem/processes/child.h"
 #include "support/says.h"
+#include "support/surfaces.h"
 
 namespace springproof::regions_test {
 namespace {
@@ -127,7 +128,7 @@ TEST(Regions, ThatAreTheBodyOrLieOutsideOfItAreSaid) {
                "[material] is not used");
   mesh = cube();
   EXPECT_WORDS(mark_regions({region(PatchRule::Box{{0.5, 0, 0}, {1.5, 1, 1}})}, 1, mesh).at(0),
-               "50 % of its box or ball lies outside of the body");
+               "50 % of its shape lies outside of the body");
 }
 
 TEST(HalvedTetrahedra, KeepVolumesPatchesAndMaterials) {
@@ -205,6 +206,67 @@ TEST_F(RegionFiles, OfStepAreItsSolidsByNumber) {
   EXPECT_NEAR(volume_of(body.mesh, 0), 1, 1e-9);
   EXPECT_EQ(facets_of_one_cell(body.mesh), outer_facets(body.mesh).size());
   EXPECT_WORDS(message_of({.file = step, .edge = 0.3, .scale = 1000, .volumes = {"3"}}), "has no physical volume '3'");
+}
+
+/// A surface in a file of the folder.
+class RegionSurfaces : public RegionFiles {
+ protected:
+  MaterialRegion enclosed(const std::string& name, const Surface& surface, double scale = 1) const {
+    const fs::path file = folder_.path / name;
+    test::write_stl_binary(file, surface);
+    return region(EnclosedPlace{file, scale});
+  }
+};
+
+TEST_F(RegionSurfaces, NestedInTheBodyConvergeToTheirVolume) {
+  const Surface round = test::moved(test::sphere(0.3, 4), 1, {0.5, 0.45, 0.5});
+  const double exact = volume(round);
+  Mesh coarse = cube(), fine = halved(cube());
+  mark_regions({enclosed("ball.stl", round)}, 1, coarse);
+  const auto notes = mark_regions({enclosed("ball.stl", round)}, 0.5, fine);
+  EXPECT_LT(std::abs(exact - volume_of(fine, 1)), 0.4 * std::abs(exact - volume_of(coarse, 1)));
+  EXPECT_LT(std::abs(exact - volume_of(fine, 1)), 0.03 * exact);
+  EXPECT_EQ(facets_of_one_cell(fine), outer_facets(fine).size());
+  EXPECT_GT(quality_of(fine).worst, 0.01);
+  EXPECT_EQ(notes.at(0).find("outside"), std::string::npos) << notes.at(0);
+}
+
+TEST_F(RegionSurfaces, WithSharpEdgesKeepThem) {
+  const Vec3 size(0.52, 0.48, 0.54);
+  const Surface brick = test::moved(test::box(size, 2), 1, {0.21, 0.33, 0.12});
+  Mesh mesh = halved(cube());
+  mark_regions({enclosed("brick.stl", brick)}, 0.5, mesh);
+  EXPECT_NEAR(volume_of(mesh, 1), size.prod(), 0.01 * size.prod());
+  EXPECT_EQ(facets_of_one_cell(mesh), outer_facets(mesh).size());
+}
+
+TEST_F(RegionSurfaces, ThatPokeOutOfTheBodyAreClippedAndThoseThatOverlapPaintedOver) {
+  Mesh mesh = cube();
+  const Surface half = test::moved(test::box({1, 1, 1}, 3), 1, {0.6, 0, 0}),
+                lower = test::moved(test::box({1, 1, 0.5}, 3), 1, {0, 0, -0.1});
+  const auto notes = mark_regions({enclosed("half.stl", half), enclosed("lower.stl", lower)}, 1, mesh);
+  EXPECT_NEAR(volume_of(mesh, 1), 0.4 * 0.6, 5e-3);
+  EXPECT_NEAR(volume_of(mesh, 2), 0.4, 5e-3);
+  EXPECT_WORDS(notes.at(0), "60 % of its shape lies outside of the body");
+  EXPECT_WORDS(notes.at(0), "40 % of it lies in later regions");
+  EXPECT_EQ(facets_of_one_cell(mesh), outer_facets(mesh).size());
+}
+
+TEST_F(RegionSurfaces, OfAllTheBodyAreIt) {
+  Mesh mesh = cube();
+  EXPECT_WORDS(mark_regions({enclosed("all.stl", test::box({1, 1, 1}, 4))}, 1, mesh).at(0), "[material] is not used");
+  EXPECT_NEAR(volume_of(mesh, 1), 1, 1e-12);
+}
+
+TEST_F(RegionSurfaces, ThatCannotBeTakenAreRefusedAtTheirLine) {
+  EXPECT_WORDS(refusal_of({enclosed("far.stl", test::moved(test::sphere(0.3, 2), 1, {5, 5, 5}))}, cube()),
+               "case.toml:7:1: region: 'part' holds no part of the body");
+  Surface open = test::sphere(0.3, 2);
+  open.triangles.pop_back();
+  EXPECT_WORDS(refusal_of({enclosed("open.stl", open)}, cube()), "case.toml:7:1: region 'part': ");
+  EXPECT_WORDS(refusal_of({enclosed("open.stl", open)}, cube()), "open.stl: ");
+  write("none.stl", "nothing");
+  EXPECT_WORDS(refusal_of({region(EnclosedPlace{folder_.path / "none.stl"})}, cube()), "none.stl");
 }
 
 /// A brick of two cells along x, each a physical volume.
