@@ -123,6 +123,7 @@ void mesh_the_body(MeshRequest request, PreparedCase& prepared, std::string& hin
     if (m + 1 == body.coarser.size()) prepared.body.notes.insert(prepared.body.notes.end(), notes.begin(), notes.end());
     prepared.body.tetrahedra.push_back(std::make_shared<Mesh>(std::move(mesh)));
   }
+  if (!e.regions.empty()) prepared.body.of_regions = prepared.body.tetrahedra.back();
 }
 
 std::vector<double> voxel_edges(const Body& body, double volume) {

@@ -192,6 +192,7 @@ void check_grids_of_reference(PreparedCase& prepared) {
     const std::vector<std::string> notes = mark_regions(e.regions, 1, mesh);
     if (divisor == 1) prepared.body.notes.insert(prepared.body.notes.end(), notes.begin(), notes.end());
     select_whole_facets(e.patches, mesh);
+    if (divisor == 1 && !e.regions.empty()) prepared.body.of_regions = std::make_shared<Mesh>(std::move(mesh));
   }
 }
 
