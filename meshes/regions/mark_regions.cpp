@@ -372,6 +372,16 @@ void mark_one(const MaterialRegion& region, std::uint8_t number, double coarsene
                     region.name, cut, mesh.hexahedra.size()));
 }
 
+/// Where a surface lies, for files in other units.
+std::string surface_words(const MaterialRegion& region) {
+  const auto* place = std::get_if<EnclosedPlace>(&region.place);
+  if (!place) return {};
+  const Box box = bounding_box(closed_surface(place->file, place->scale).facets);
+  const auto corner = [](const Vec3& x) { return fmt::format("({:.3g}, {:.3g}, {:.3g})", x[0], x[1], x[2]); };
+  return fmt::format(": its surface reaches from {} to {} m, with scale = {:g}", corner(box.low), corner(box.high),
+                     place->scale);
+}
+
 /// @throws InputError for a region without cells
 void refuse_without_cells(const MaterialRegion& region, bool covered, const Mesh& mesh) {
   const Vec3 size = (mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff()).transpose();
@@ -379,7 +389,8 @@ void refuse_without_cells(const MaterialRegion& region, bool covered, const Mesh
       region.where,
       fmt::format("region: '{}' holds no part of the body{} (allowed: a place in the body, of "
                   "{:.3g} x {:.3g} x {:.3g} m; or smaller cells)",
-                  region.name, covered ? ", as later regions lie over all of it" : "", size[0], size[1], size[2]));
+                  region.name, covered ? ", as later regions lie over all of it" : surface_words(region), size[0],
+                  size[1], size[2]));
 }
 
 /// A region's share of the body, and what else is worth knowing.

@@ -18,12 +18,8 @@ Range range_of(const ModulusName& modulus) {
 EnclosedPlace read_enclosed(const TomlTable& table, const TomlValue& stl, const Experiment& e) {
   const double unit = unit_in(table.value().units, "m").in_si;
   const auto scale = table.find("scale");
-  const std::filesystem::path file = e.file.parent_path() / as_text(stl);
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored))
-    refuse(stl, fmt::format("'{}' is no file", file.string()), "a file, found from the case file's folder");
   const bool as_body = !scale && !e.body.is_script() && !e.body.states_its_unit();
-  return {file, as_body ? e.body.scale : unit * (scale ? as_number(*scale, positive_number) : 1)};
+  return {e.file.parent_path() / as_text(stl), as_body ? e.body.scale : unit * (scale ? as_number(*scale, positive_number) : 1)};
 }
 
 /// The one thing that says where a region lies.

@@ -260,7 +260,8 @@ TEST_F(RegionSurfaces, OfAllTheBodyAreIt) {
 
 TEST_F(RegionSurfaces, ThatCannotBeTakenAreRefusedAtTheirLine) {
   EXPECT_WORDS(refusal_of({enclosed("far.stl", test::moved(test::sphere(0.3, 2), 1, {5, 5, 5}))}, cube()),
-               "case.toml:7:1: region: 'part' holds no part of the body");
+               "case.toml:7:1: region: 'part' holds no part of the body: its surface reaches from (4.7, 4.7, 4.7) to "
+               "(5.3, 5.3, 5.3) m, with scale = 1");
   Surface open = test::sphere(0.3, 2);
   open.triangles.pop_back();
   EXPECT_WORDS(refusal_of({enclosed("open.stl", open)}, cube()), "case.toml:7:1: region 'part': ");
