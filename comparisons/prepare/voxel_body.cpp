@@ -10,6 +10,7 @@
 #include "comparisons/judge/measures.h"
 #include "comparisons/prepare/load_resultants.h"
 #include "comparisons/prepare/refined_lattice.h"
+#include "comparisons/prepare/region_notes.h"
 #include "comparisons/prepare/sampling.h"
 #include "meshes/locate/facet_tree.h"
 #include "meshes/locate/locate.h"
@@ -258,8 +259,12 @@ void cut_lattices(PreparedCase& prepared) {
     add_cubes(grid);
     const auto is_cut = [](const ModelParameters& p) { return p.cut.value_or(false); };
     if (std::none_of(prepared.models.begin(), prepared.models.end(), is_cut)) continue;
+    if (!prepared.experiment.regions.empty()) require_resolved(prepared.experiment.regions, true_body, edge);
     CutBody cut = cut_body(grid, true_body);
     prepared.body.notes.push_back(cut_cells_note(prepared, cut));
+    if (!prepared.experiment.regions.empty() && edge == edges.back())
+      for (std::string& note : region_notes(prepared.experiment.regions, true_body, edge))
+        prepared.body.notes.push_back(std::move(note));
     prepared.body.notes.insert(prepared.body.notes.end(), cut.notes.begin(), cut.notes.end());
     prepared.lattices.back().cut = std::make_shared<CutBody>(std::move(cut));
     const auto is_measured = [](const ModelParameters& p) { return p.coarsened.value_or(false); };

@@ -107,14 +107,15 @@ SolidShape shape_of(const PatchRule::Beyond& side) {
 }
 
 /// Its extent is that of a ball of the same ratio of volume to area, if its box is not shorter.
-SolidShape shape_of(const EnclosedPlace& place) {
-  const Surface facets = closed_surface(place.file, place.scale).facets;
+SolidShape shape_of(const Surface& facets) {
   const Box box = bounding_box(facets);
   const double inside = springproof::volume(facets);
   return {{{{}, std::make_shared<const Enclosed>(facets)}},
           std::min((box.high - box.low).minCoeff(), 6 * inside / area(facets)),
           inside};
 }
+
+SolidShape shape_of(const EnclosedPlace& place) { return shape_of(closed_surface(place.file, place.scale).facets); }
 
 /// Cuts tetrahedra along the borders of a shape, so that each lies on one side.
 class BorderCuts {
@@ -385,12 +386,11 @@ std::string surface_words(const MaterialRegion& region) {
 /// @throws InputError for a region without cells
 void refuse_without_cells(const MaterialRegion& region, bool covered, const Mesh& mesh) {
   const Vec3 size = (mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff()).transpose();
-  throw InputError(
-      region.where,
-      fmt::format("region: '{}' holds no part of the body{} (allowed: a place in the body, of "
-                  "{:.3g} x {:.3g} x {:.3g} m; or smaller cells)",
-                  region.name, covered ? ", as later regions lie over all of it" : surface_words(region), size[0],
-                  size[1], size[2]));
+  throw InputError(region.where,
+                   fmt::format("region: '{}' holds no part of the body{} (allowed: a place in the body, of "
+                               "{:.3g} x {:.3g} x {:.3g} m; or smaller cells)",
+                               region.name, covered ? ", as later regions lie over all of it" : surface_words(region),
+                               size[0], size[1], size[2]));
 }
 
 /// A region's share of the body, and what else is worth knowing.
@@ -423,6 +423,11 @@ std::vector<std::string> mark_regions(const std::vector<MaterialRegion>& regions
     notes.push_back(share_note(regions[r], volumes[r + 1], alone[r], volume(mesh, mesh.nodes)));
   }
   return notes;
+}
+
+void mark_enclosed(const Surface& surface, std::uint8_t number, double coarseness, Mesh& mesh) {
+  mesh.materials.resize(mesh.tetrahedra.size(), 0);
+  paint(shape_of(surface), number, coarseness, mesh);
 }
 
 bool end_at_faces_of(const Mesh& mesh, const std::vector<MaterialRegion>& regions) {

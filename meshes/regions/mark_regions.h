@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "meshes/mesh.h"
+#include "meshes/surface/surface.h"
 #include "problem/region.h"
 
 namespace springproof {
@@ -17,6 +18,9 @@ namespace springproof {
 /// @throws InputError at a region that holds no cell, one whose border runs through hexahedra, and a surface that is
 /// not closed
 std::vector<std::string> mark_regions(const std::vector<MaterialRegion>& regions, double coarseness, Mesh& mesh);
+
+/// Marks what a closed surface encloses as material `number`, by tetrahedra cut along it.
+void mark_enclosed(const Surface& surface, std::uint8_t number, double coarseness, Mesh& mesh);
 
 /// Whether the borders of boxes, balls, half-spaces and surfaces run along faces of the mesh's hexahedra, so that every
 /// mesh with this property has the same regions; true of tetrahedra, which are cut.

@@ -20,6 +20,7 @@
 #include "meshes/mesher/mesher.h"
 #include "meshes/mesher/mesher_exchange.h"
 #include "meshes/patches/select_patches.h"
+#include "meshes/regions/mark_regions.h"
 #include "msm/exchange/lammps.h"
 #include "msm/laws/capabilities.h"
 #include "msm/models.h"
@@ -75,7 +76,6 @@ int export_calculix(const ExportRequest& request) {
       !request.hold.empty() || !request.load.empty())
     throw InputError("--to calculix: a deck has the case's elements and material (allowed: --poisson-ratio, --cells)");
   const Experiment experiment = read_case(request.what);
-  require_one_material(experiment, "export --to calculix");
   calculix::require_counterpart(experiment);
   const IsotropicMaterial material = material_of(experiment, request.moduli.poisson_ratio);
   const std::string file = request.out.empty() ? experiment.name + ".inp" : request.out;
@@ -87,9 +87,13 @@ int export_calculix(const ExportRequest& request) {
     throw InputError("--cells: is for bodies of hexahedra; the tetrahedra of this one have [reference] edge_m");
   const Cells cells = request.cells.empty() && !experiment.body.is_voxels() ? experiment.body.cells.front()
                                                                             : cells_of_option(request.cells);
-  Mesh mesh = experiment.body.is_voxels() ? *prepared.body.tetrahedra.back()
-                                          : mesh_geo(prepared.body.geo, experiment.body.size, cells);
-  if (!experiment.body.is_voxels()) select_whole_facets(experiment.patches, mesh);
+  Mesh mesh = experiment.body.is_voxels()
+                  ? *prepared.body.tetrahedra.back()
+                  : mesh_geo(prepared.body.geo, experiment.body.size, cells, {}, volumes_of(experiment.regions));
+  if (!experiment.body.is_voxels()) {
+    mark_regions(experiment.regions, 1, mesh);
+    select_whole_facets(experiment.patches, mesh);
+  }
   const calculix::Deck deck = calculix::make_deck(experiment, material, mesh);
   std::ostringstream out;
   calculix::write(deck, out);

@@ -284,7 +284,21 @@ TEST_F(RegionFiles, OfAMeshAreThoseOfItsCells) {
   EXPECT_EQ(cut.mesh.tetrahedra.size(), 64 * cut.coarser[0].tetrahedra.size());
   EXPECT_NEAR(volume_of(cut.mesh, 1), 1, 1e-12);
   EXPECT_NEAR(volume_of(cut.coarser[0], 1), 1, 1e-12);
-  EXPECT_WORDS(message_of({.file = file, .edge = 0.005, .volumes = {"stiff"}}), "cut into eight");
+}
+
+TEST_F(RegionFiles, OfAMeshOfManyCellsAreCutIntoOneFilledAnew) {
+  const fs::path file = folder_.path / "many.msh";
+  const fs::path geo =
+      write("many.geo", halves_ + "Mesh.CharacteristicLengthMax = 0.13;\nMesh 3;\nSave \"" + file.string() + "\";\n");
+  mesh_body({.file = geo, .size = {3, 1, 1}, .edge = 0.5, .volumes = {"small", "7"}});
+  const MeshedBody body = mesh_body({.file = file, .edge = 0.2, .volumes = {"small"}, .coarser = {2.25, 1.5}});
+  ASSERT_EQ(body.coarser.size(), 2u);
+  for (const Mesh* mesh : {&body.mesh, &body.coarser[0], &body.coarser[1]}) {
+    EXPECT_NEAR(volume_of(*mesh, 1), 1, 1e-3);
+    EXPECT_NEAR(volume_of(*mesh, 0), 2, 1e-3);
+    EXPECT_EQ(facets_of_one_cell(*mesh), outer_facets(*mesh).size());
+  }
+  EXPECT_LT(body.mesh.tetrahedra.size(), 20000u);
 }
 
 }  // namespace
