@@ -203,9 +203,7 @@ EmbeddedModel build_cut(const ModelParameters& p, const CutBody& body, const std
   std::vector<IsotropicMaterial> materials = {material};
   materials.insert(materials.end(), regions.begin(), regions.end());
   built.model.network = cut_lattice(body, held, materials);
-  AveragedSprings law = averaged_law(p, material);
-  for (const IsotropicMaterial& m : regions) law.regions.push_back(averaged_law(p, m));
-  built.model.laws = {std::move(law), Anchors{}};
+  built.model.laws = {averaged_law(p, material, regions), Anchors{}};
   built.model.small_displacements_only = p.shift > 0 || !p.has(Extension::averaging);
   built.embedding = embed(body, held, built.model.network, mesh);
   return built;

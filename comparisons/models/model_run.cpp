@@ -157,13 +157,14 @@ ModelSample measured(const PreparedCase& prepared, const Lattice& lattice, const
     sample.field.volume_change_first_order = change.first_order;
   }
   const bool cut = parameters.cut.value_or(false);
-  sample.scalars =
-      field_measures(prepared, sample.field,
-                     cut ? displacement_at(*lattice.cut, sample.state.displacement, measured_points(prepared))
-                         : at_measured_points(prepared, lattice, sample.field.displacement));
+  sample.scalars = field_measures(
+      prepared, sample.field,
+      cut ? displacement_at(cells_of(lattice, parameters), sample.state.displacement, measured_points(prepared))
+          : at_measured_points(prepared, lattice, sample.field.displacement));
   if (cut && averaged_springs_of(built.model) && asked(e, "promised_error") && !in_motion)
     sample.scalars["promised_error"] = cell_energies(built.model, sample.state.displacement).promised_error();
-  if (cut && asked(e, "region")) sample.scalars.merge(region_means(network, e.regions, sample.state.displacement));
+  if (!network.cells.materials.empty() && asked(e, "region"))
+    sample.scalars.merge(region_means(network, e.regions, sample.state.displacement));
   if (asked(e, "network")) add_network(network, sample.scalars);
   if (asked(e, "line")) {
     sample.line = sample_line(*e.line, *kelvin_of(e), built.model, sample.state.displacement);

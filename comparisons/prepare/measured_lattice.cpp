@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "meshes/mesher/mesh_cache.h"
+#include "msm/coarsening/states.h"
 #include "msm/embedding/cut_lattice.h"
 #include "msm/periodic/laws_of_model.h"
 #include "problem/files/checksum.h"
@@ -31,7 +32,13 @@ struct Constants {
 std::string constants_of(AveragedSprings law) {
   Constants constants;
   law.fields(constants);
+  for (AveragedSprings& region : law.regions) region.fields(constants);
   return constants.all;
+}
+
+Mesh of_one_material(Mesh body) {
+  body.materials.clear();
+  return body;
 }
 
 template <class Matrix>
@@ -46,7 +53,8 @@ std::string line_of(const CutBody& coarse, const Mesh& body, const std::vector<s
   for (const std::string& name : held)
     for (const PatchInCell& part : coarse.patches.at(name))
       supports += fmt::format("{} {} ", part.cell, fmt::join(part.area, " "));
-  return fmt::format("{} {} {} {} {} {} {} ", checksum(bytes_of(body.nodes) + bytes_of(body.tetrahedra) + supports),
+  return fmt::format("{} {} {} {} {} {} {} ",
+                     checksum(bytes_of(body.nodes) + bytes_of(body.tetrahedra) + bytes_of(body.materials) + supports),
                      g.origin[0], g.origin[1], g.origin[2], g.edge, measuring_ratio, coarse.cells.size());
 }
 
@@ -70,8 +78,15 @@ MeasuredBody from_content(const std::string& bytes, std::size_t cells) {
 }  // namespace
 
 MeasuredLattice::MeasuredLattice(std::shared_ptr<const CutBody> coarse, std::shared_ptr<const Mesh> body,
-                                 std::vector<std::string> held)
-    : coarse_(std::move(coarse)), body_(std::move(body)), held_(std::move(held)) {}
+                                 std::vector<std::string> held, std::vector<IsotropicMaterial> regions)
+    : coarse_(std::move(coarse)), body_(std::move(body)), held_(std::move(held)), regions_(std::move(regions)) {
+  if (!regions_.empty()) coarse_ = std::make_shared<CutBody>(cut_body(coarse_->grid, of_one_material(*body_)));
+}
+
+const FineCells& MeasuredLattice::fine() {
+  if (!fine_) fine_ = fine_cells(*coarse_, *body_, measuring_ratio);
+  return *fine_;
+}
 
 MeasuredBody MeasuredLattice::measure(const AveragedSprings& law) {
   const std::size_t cells = coarse_->cells.size();
@@ -79,28 +94,45 @@ MeasuredBody MeasuredLattice::measure(const AveragedSprings& law) {
   if (std::optional<MeasuredBody> kept =
           place.find([&](const std::string& bytes) { return from_content(bytes, cells); }))
     return std::move(*kept);
-  if (!fine_) fine_ = fine_cells(*coarse_, *body_, measuring_ratio);
-  progress::detail([&] { return fmt::format("measuring {} cells in {}", cells, fine_->body.cells.size()); });
+  progress::detail([&] { return fmt::format("measuring {} cells in {}", cells, fine().body.cells.size()); });
   MeasureOptions options;
   options.threads = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, 16u));
   options.interrupted = children_interrupted;
-  MeasuredBody measured = measure_cells({*coarse_, *fine_, law, held_}, options);
+  MeasuredBody measured = measure_cells({*coarse_, fine(), law, held_}, options);
   place.keep(content_of(measured));
   return measured;
 }
 
 const MeasuredBody& MeasuredLattice::measured(const ModelParameters& parameters, const IsotropicMaterial& material) {
-  const AveragedSprings law = measuring_law(parameters, material);
+  const AveragedSprings law = measuring_law(parameters, material, regions_);
   const std::scoped_lock lock(one_at_a_time_);
   const std::string constants = constants_of(law);
   const auto known = known_.find(constants);
   return known != known_.end() ? known->second : known_.emplace(constants, measure(law)).first->second;
 }
 
-MeasuredCells MeasuredLattice::law(const ModelParameters& parameters, const IsotropicMaterial& material) {
-  const CellSet cells = cut_lattice(*coarse_, {}, 1).cells;
-  return in_material(measured(parameters, material).cells, cells, measuring_law(parameters, material),
-                     averaged_law(parameters, material));
+void MeasuredLattice::apply(const ModelParameters& parameters, const IsotropicMaterial& material,
+                            const std::vector<std::string>& held, EmbeddedModel& built) {
+  const MeasuredCells& measured_cells = measured(parameters, material).cells;
+  const AveragedSprings of = measuring_law(parameters, material, regions_),
+                        at = averaged_law(parameters, material, regions_);
+  const std::scoped_lock lock(one_at_a_time_);
+  const FineCells* of_materials = regions_.empty() ? nullptr : &fine();
+  MassSpringModel& model = built.model;
+  erase_laws<AveragedSprings>(model);
+  model.laws.emplace_back(in_material(measured_cells, model.network.cells, of, at, of_materials));
+  if (!of_materials) return;
+  stiffen_anchors(*coarse_, held, *of_materials, at, model.network);
+  built.embedding.volumes.head(coarse_->points.rows()) = weighed_volumes(material);
+}
+
+/// Of the coarse nodes [m^3], a part of another density by its mass.
+Eigen::VectorXd MeasuredLattice::weighed_volumes(const IsotropicMaterial& material) {
+  std::vector<IsotropicMaterial> materials = {material};
+  materials.insert(materials.end(), regions_.begin(), regions_.end());
+  const Eigen::VectorXd fine_volumes = embed(fine().body, {}, cut_lattice(fine().body, {}, materials), Mesh{}).volumes;
+  const Eigen::VectorXd volumes = prolongation(*coarse_, fine()).transpose() * fine_volumes;
+  return fine_volumes.sum() / volumes.sum() * volumes;
 }
 
 }  // namespace springproof

@@ -94,11 +94,15 @@ EmbeddedModel build_cut_on(const Lattice& lattice, const ModelParameters& parame
                            const std::vector<IsotropicMaterial>& regions) {
   ModelParameters averaged = parameters;
   averaged.coarsened = false;
-  EmbeddedModel built = build_cut(averaged, *lattice.cut, held, *lattice.mesh, material, regions);
-  if (!parameters.coarsened.value_or(false)) return built;
-  erase_laws<AveragedSprings>(built.model);
-  built.model.laws.emplace_back(lattice.measured->law(parameters, material));
+  if (!parameters.coarsened.value_or(false))
+    return build_cut(averaged, *lattice.cut, held, *lattice.mesh, material, regions);
+  EmbeddedModel built = build_cut(averaged, lattice.measured->cells(), held, *lattice.mesh, material);
+  lattice.measured->apply(parameters, material, held, built);
   return built;
+}
+
+const CutBody& cells_of(const Lattice& lattice, const ModelParameters& parameters) {
+  return parameters.coarsened.value_or(false) ? lattice.measured->cells() : *lattice.cut;
 }
 
 EmbeddedModel build_on(const PreparedCase& prepared, const Lattice& lattice, const ModelParameters& parameters,

@@ -111,6 +111,9 @@ EmbeddedModel build_cut_on(const Lattice& lattice, const ModelParameters& parame
                            const std::vector<std::string>& held, const IsotropicMaterial& material,
                            const std::vector<IsotropicMaterial>& regions = {});
 
+/// The cut cells that a model of a lattice is made of.
+const CutBody& cells_of(const Lattice& lattice, const ModelParameters& parameters);
+
 /// Adds the next lattice.
 void add_lattice(Lattice lattice, PreparedCase& prepared);
 

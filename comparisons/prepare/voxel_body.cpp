@@ -217,7 +217,8 @@ void measure_lattice(PreparedCase& prepared, Lattice& lattice) {
     if (value[0] && value[1] && value[2]) held.insert(*patch_of(load));
   }
   lattice.measured = std::make_shared<MeasuredLattice>(lattice.cut, prepared.body.tetrahedra.back(),
-                                                       std::vector<std::string>(held.begin(), held.end()));
+                                                       std::vector<std::string>(held.begin(), held.end()),
+                                                       materials_of(prepared.experiment.regions));
   std::set<const MeasuredBody*> noted;
   for (const ModelParameters& p : prepared.models)
     for (const IsotropicMaterial& material : prepared.experiment.materials) {

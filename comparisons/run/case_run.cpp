@@ -140,8 +140,8 @@ void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
   if (!run.prepared.models[number].cut.value_or(false)) return add_splits(run, lattice, label, fields, scalars);
   const NodalVectors& u = samples.front().state.displacement;
   if (!run.vtu.folder.empty())
-    write_cells(run.vtu.folder / (file_stem(key) + "_cells.vtu"), *run.prepared.lattices[lattice].cut, u,
-                run.notes(key));
+    write_cells(run.vtu.folder / (file_stem(key) + "_cells.vtu"),
+                cells_of(run.prepared.lattices[lattice], run.prepared.models[number]), u, run.notes(key));
   run.cut_states.push_back({lattice, number, u, samples.front().field.displacement, scalars.front()});
   add_splits_of_cut_cells(run, lattice, number, fields, scalars);
 }

@@ -26,8 +26,9 @@ std::vector<ExtrapolatedModel> extrapolate_cut_cells(const PreparedCase& prepare
     limit.from = prepared.lattices[fine.lattice].promised > 0
                      ? fmt::format("from promised errors of {:.3g} and {:.3g}", H, h)
                      : fmt::format("from edges of {:.4g} and {:.4g} m", H, h);
-    const NodalVectors from_coarse = displacement_at(*prepared.lattices[coarse.lattice].cut, coarse.displacement,
-                                                     prepared.lattices[fine.lattice].mesh->nodes);
+    const NodalVectors from_coarse =
+        displacement_at(cells_of(prepared.lattices[coarse.lattice], prepared.models[model]), coarse.displacement,
+                        prepared.lattices[fine.lattice].mesh->nodes);
     limit.field = fine.field + factor * (fine.field - from_coarse);
     for (const auto& [measure, value] : fine.scalars) {
       if (measure == "promised_error") continue;  // what the limit is in proportion to: 0

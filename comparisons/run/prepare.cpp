@@ -259,7 +259,11 @@ void check_region_models(const PreparedCase& prepared) {
   if (e.regions.empty()) return;
   for (std::size_t m = 0; m < prepared.models.size(); ++m) {
     const ModelParameters& p = prepared.models[m];
-    const bool can = *p.cut && !*p.coarsened && !p.springs && p.has(Extension::averaging) && e.body.accuracies.empty();
+    const bool can = *p.cut && !p.springs && p.has(Extension::averaging) && e.body.accuracies.empty();
+    if (*p.coarsened && e.models[m].in_motion)
+      throw InputError(e.models[m].where, fmt::format("compare.models: {}: coarsened = true: measured cells of several "
+                                                      "materials are for bodies at rest (allowed: no [dynamics])",
+                                                      e.models[m].label));
     if (is_external(e.models[m]) || can) continue;
     throw InputError(
         e.models[m].where,

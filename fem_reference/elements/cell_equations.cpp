@@ -37,7 +37,8 @@ double dilatation_at(const CellLaw& law, const Matrix3d& h) {
   return law.law ? dilatation(*law.law, to_array(Matrix3d::Identity() + h)) : h.trace();
 }
 
-PointResponse respond_at(const CellLaw& law, const Matrix3d& h, double p) {
+// `derivatives`: whether Q, G and D are wanted of a law of large strain too.
+PointResponse respond_at(const CellLaw& law, const Matrix3d& h, double p, bool derivatives) {
   PointResponse r;
   if (!law.law) {
     const Matrix3d strain = (h + h.transpose()) / 2;
@@ -50,6 +51,10 @@ PointResponse respond_at(const CellLaw& law, const Matrix3d& h, double p) {
     return r;
   }
   r.F = Matrix3d::Identity() + h;
+  if (!derivatives) {
+    r.S = from_voigt(stress(*law.law, law.mu, p, r.F.transpose() * r.F));
+    return r;
+  }
   const LawResponse response = respond(*law.law, law.mu, p, to_array(r.F));
   r.S = from_voigt(response.S);
   r.Q = from_voigt(response.Q);
@@ -133,13 +138,15 @@ PointStates states(const CellLaw& law, const CellShape& shape, const CellVector&
   return s;
 }
 
-// Mean of f over the straight line from a to b.
+// Mean of f over the straight line from a to b, by Gauss' rule of four points, or of two.
 template <class T, class Function>
-auto mean_over(const T& a, const T& b, const Function& f) {
-  constexpr double at[2] = {0.33998104358485626, 0.86113631159405258},  // Gauss, four points
-      weight[2] = {0.32607257743127307, 0.17392742256872693};
+auto mean_over(const T& a, const T& b, const Function& f, bool two = false) {
+  constexpr double at[2] = {0.33998104358485626, 0.86113631159405258},
+      weight[2] = {0.32607257743127307, 0.17392742256872693}, of_two = 0.57735026918962576;
   const T middle = (a + b) / 2, half = (b - a) / 2;
-  std::decay_t<decltype(f(a))> sum = weight[0] * (f(T(middle - at[0] * half)) + f(T(middle + at[0] * half)));
+  using Mean = std::decay_t<decltype(f(a))>;
+  if (two) return Mean(0.5 * (f(T(middle - of_two * half)) + f(T(middle + of_two * half))));
+  Mean sum = weight[0] * (f(T(middle - at[0] * half)) + f(T(middle + at[0] * half)));
   sum += weight[1] * (f(T(middle - at[1] * half)) + f(T(middle + at[1] * half)));
   return sum;
 }
@@ -193,7 +200,7 @@ CellVector cell_residual(const CellLaw& law, const CellShape& shape, const CellV
   for (int q = 0; q < points; ++q) {
     const double w = shape.weights[q];
     const auto dN = shape.gradients.middleRows<3>(3 * q);
-    const PointResponse response = respond_at(law, state.h[q], state.p[q]);
+    const PointResponse response = respond_at(law, state.h[q], state.p[q], tangent != nullptr);
     const Matrix3d S = tensor(response.S);
     stress.middleRows<3>(3 * q) = w * S * response.F.transpose();
     if (law.form == Form::mixed)
@@ -260,10 +267,12 @@ CellVector step_residual(const CellLaw& law, const CellShape& shape, const CellV
              shape.pressures.row(q).transpose();
     }
     const Matrix3d F0 = Matrix3d::Identity() + first.h[q], F1 = Matrix3d::Identity() + last.h[q];
-    const Vector6 S = mean_over(Matrix3d(F0.transpose() * F0), Matrix3d(F1.transpose() * F1), [&](const Matrix3d& C) {
-      const Matrix3d U = C.llt().matrixU();  // any F with F^T F = C
-      return Vector6(from_voigt(respond(*law.law, law.mu, p, to_array(U)).S));
-    });
+    const Matrix3d C0 = F0.transpose() * F0, C1 = F1.transpose() * F1;
+    // Two points err by 1e-2 mu times the fourth power of this change: round-off.
+    const bool small = (C1 - C0).norm() * C0.inverse().norm() < 1e-3;
+    const Vector6 S = mean_over(
+        C0, C1, [&](const Matrix3d& C) { return Vector6(from_voigt(springproof::fem::stress(*law.law, law.mu, p, C))); },
+        small);
     stress.middleRows<3>(3 * q) = w / 2 * tensor(S) * (F0 + F1).transpose();
   }
   add_forces(shape, stress, r.u);

@@ -90,6 +90,13 @@ bool is_linear_in_dilatation(Law law) { return law == Law::st_venant_kirchhoff |
 
 Voigt to_voigt(const Vector6& v) { return {v[0], v[1], v[2], v[3], v[4], v[5]}; }
 
+// N_a N_a of the eigenvectors N
+Eigen::Matrix<double, 6, 3> squares(const Eigen::Matrix3d& N) {
+  Eigen::Matrix<double, 6, 3> M;
+  for (int a = 0; a < 3; ++a) M.col(a) = symmetric_product(N.col(a), N.col(a));
+  return M;
+}
+
 }  // namespace
 
 std::optional<Law> law_named(const std::string& name) {
@@ -168,11 +175,11 @@ LawResponse respond(Law law, double mu, double p, const Matrix3& F) {
   const Eigen::Matrix3d& N = eigen.eigenvectors();
   const Principal r = principal(law, mu, p, c);
 
-  Eigen::Matrix<double, 6, 3> M, pairs;  // N_a N_a, and N_a N_b of each pair
+  const Eigen::Matrix<double, 6, 3> M = squares(N);
+  Eigen::Matrix<double, 6, 3> pairs;  // N_a N_b
   Eigen::Vector3d of_pairs;
   for (int a = 0; a < 3; ++a) {
     const int b = (a + 1) % 3;
-    M.col(a) = symmetric_product(N.col(a), N.col(a));
     pairs.col(a) = symmetric_product(N.col(a), N.col(b));
     of_pairs[a] = 2 * divided_difference(r, c, std::min(a, b), std::max(a, b));
   }
@@ -180,6 +187,11 @@ LawResponse respond(Law law, double mu, double p, const Matrix3& F) {
   using Rows = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
   Eigen::Map<Rows>(response.D[0].data()) = M * r.d * M.transpose() + pairs * of_pairs.asDiagonal() * pairs.transpose();
   return response;
+}
+
+Voigt stress(Law law, double mu, double p, const Eigen::Matrix3d& C) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(C);
+  return to_voigt(squares(eigen.eigenvectors()) * principal(law, mu, p, eigen.eigenvalues()).s);
 }
 
 }  // namespace springproof::fem

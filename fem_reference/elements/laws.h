@@ -6,6 +6,7 @@
 // quantity averaged is the volume change itself (St. Venant-Kirchhoff: tr E).
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <optional>
 #include <string>
@@ -41,6 +42,9 @@ struct LawResponse {
 
 /// Response at deformation gradient F (det F > 0) and pressure p [Pa]; mu is the shear modulus [Pa].
 LawResponse respond(Law law, double mu, double p, const Matrix3& F);
+
+/// Its stress alone [Pa], at C = F^T F: a quarter of the work.
+Voigt stress(Law law, double mu, double p, const Eigen::Matrix3d& C);
 
 /// The dilatation g = J - 1, or tr E for St. Venant-Kirchhoff.
 double dilatation(Law law, const Matrix3& F);

@@ -50,11 +50,11 @@ Eigen::Matrix3d linear_stress(const dealii::Tensor<2, 3>& h, double mu, double p
 
 // F S F^T / det F
 Eigen::Matrix3d cauchy_stress(Law law, const Matrix3& F, double mu, double p) {
-  const Voigt S = respond(law, mu, p, F).S;
   Eigen::Matrix3d second, deformation;
-  second << S[0], S[3], S[5], S[3], S[1], S[4], S[5], S[4], S[2];
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) deformation(i, j) = F[i][j];
+  const Voigt S = stress(law, mu, p, deformation.transpose() * deformation);
+  second << S[0], S[3], S[5], S[3], S[1], S[4], S[5], S[4], S[2];
   return deformation * second * deformation.transpose() / determinant(F);
 }
 

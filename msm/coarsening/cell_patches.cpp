@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "msm/coarsening/layered_solver.h"
+#include "msm/coarsening/states.h"
 #include "msm/embedding/supports.h"
 
 namespace springproof {
@@ -23,16 +24,17 @@ double youngs_modulus(const AveragedSprings& law) {
   return G * (3 * lambda + 2 * G) / (lambda + G);
 }
 
-/// The free unknowns of fine nodes, layer by layer along the axis that makes the least work.
+/// The free unknowns of fine nodes, layer by layer along the axis that makes the least work; a layer has `thickness`
+/// planes of nodes.
 struct Layers {
   std::vector<int> layer, place;    ///< of each node, and its first unknown in the layer; -1: held
   std::vector<int> unknowns;        ///< of each layer
   std::vector<Eigen::Index> first;  ///< unknown of each layer, then their number
 
-  Layers(const CutBody& fine, const std::vector<int>& nodes, const std::vector<char>& held) {
+  Layers(const CutBody& fine, const std::vector<int>& nodes, const std::vector<char>& held, int thickness) {
     double least = std::numeric_limits<double>::infinity();
     for (int axis = 0; axis < 3; ++axis) {
-      Layers next(fine, nodes, held, axis);
+      Layers next(fine, nodes, held, thickness, axis);
       double work = 0;
       for (const int n : next.unknowns) work += std::pow(n, 3);
       if (work >= least) continue;
@@ -46,7 +48,7 @@ struct Layers {
   Eigen::Index unknown(int node) const { return first[layer[node]] + place[node]; }
 
  private:
-  Layers(const CutBody& fine, const std::vector<int>& nodes, const std::vector<char>& held, int axis)
+  Layers(const CutBody& fine, const std::vector<int>& nodes, const std::vector<char>& held, int thickness, int axis)
       : layer(nodes.size(), -1), place(nodes.size(), -1) {
     int lowest = std::numeric_limits<int>::max();
     for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -56,7 +58,7 @@ struct Layers {
     }
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       if (held[i]) continue;
-      layer[i] -= lowest;
+      layer[i] = (layer[i] - lowest) / thickness;
       if (layer[i] >= static_cast<int>(unknowns.size())) unknowns.resize(layer[i] + 1, 0);
       place[i] = unknowns[layer[i]];
       unknowns[layer[i]] += 3;
@@ -86,26 +88,41 @@ struct CellPatches::FineNodes {
 
 CellPatches::CellPatches(const CutBody& coarse, const FineCells& fine, const AveragedSprings& law,
                          const std::vector<std::string>& held)
-    : coarse_(coarse), fine_(fine), law_(law), full_(law.cell_matrix({fine.body.grid.edge})) {
+    : coarse_(coarse), fine_(fine), law_(law) {
+  for (std::size_t m = 0; m <= law.regions.size(); ++m)
+    stiffness_.push_back(law.in(static_cast<int>(m)).cell_matrix({fine.body.grid.edge}));
   at_.resize(coarse.points.rows());
   for (int c = 0; c < static_cast<int>(coarse.cells.size()); ++c)
     for (const int n : coarse.cells[c].corners) at_[n].push_back(c);
   cells_at_.resize(fine.body.points.rows(), 0);
   for (int f = 0; f < static_cast<int>(fine.in.size()); ++f) {
-    const bool full = fine.body.cells[f].filled.fraction == 1;
-    number_.push_back(full ? -1 : static_cast<int>(stiffness_.size()));
-    if (!full) stiffness_.push_back(law.cell_matrix(shape_of(fine.body, f)));
+    const CutCell& cell = fine.body.cells[f];
+    const bool full = cell.filled.fraction == 1;
+    number_.push_back(full ? cell.material : static_cast<int>(stiffness_.size()));
+    if (!full) stiffness_.push_back(law.in(cell.material).cell_matrix(shape_of(fine.body, f)));
     if (fine.in[f] < 0) continue;
     for (const int n : fine.body.cells[f].corners) ++cells_at_[n];
   }
   add_supports(held);
+  add_bonds();
+}
+
+void CellPatches::add_bonds() {
+  bonds_ = bonds_of_interfaces(fine_.body, materials_of(law_));
+  bonds_of_.resize(fine_.in.size());
+  reaches_.resize(fine_.in.size(), 0);
+  for (std::size_t b = 0; b < bonds_.size(); ++b) {
+    const auto& sides = fine_.body.interfaces[b / anchors_of_part].sides;
+    bonds_of_[sides[0].cell].push_back(static_cast<int>(b));
+    if (fine_.body.cells[sides[0].cell].index != fine_.body.cells[sides[1].cell].index) reaches_[sides[0].cell] = 1;
+  }
 }
 
 void CellPatches::add_supports(const std::vector<std::string>& held) {
   at_support_.assign(fine_.body.points.rows(), 0);
   for (const std::string& name : held) {
     const std::vector<PatchInCell>& parts = fine_.body.patches.at(name);
-    const std::vector<Anchor> anchors = anchors_of_patch(fine_.body, name, 1);
+    const std::vector<Anchor> anchors = anchors_of_patch(fine_.body, name, materials_of(law_));
     for (std::size_t a = 0; a < anchors.size(); ++a) {
       const int cell = parts[a / anchors_of_part].cell;
       const Eigen::Map<const Eigen::Matrix<double, 8, 1>> w(anchors[a].weights.data());
@@ -126,8 +143,21 @@ std::vector<char> CellPatches::near_supports() const {
   return near;
 }
 
-const CellStiffnessMatrix& CellPatches::stiffness(int fine) const {
-  return number_[fine] < 0 ? full_ : stiffness_[number_[fine]];
+const CellStiffnessMatrix& CellPatches::stiffness(int fine) const { return stiffness_[number_[fine]]; }
+
+/// Unless it leads out of the patch.
+template <class Act>
+void CellPatches::each_of_bond(const InterfaceBond& bond, const FineNodes& nodes, const Act& act) const {
+  std::vector<std::pair<int, double>> ends;
+  bool inside = true;
+  for_each_corner(bond, [&](int node, double weight) {
+    const auto at = nodes.number.find(node);
+    inside = inside && at != nodes.number.end();
+    if (inside) ends.emplace_back(at->second, weight);
+  });
+  if (!inside) return;
+  for (const auto& [m, v] : ends)
+    for (const auto& [n, w] : ends) act(m, n, Eigen::Matrix3d(v * w * bond.stiffness));
 }
 
 template <class Act>
@@ -141,6 +171,7 @@ void CellPatches::each_coupling(const Patch& patch, const FineNodes& nodes, cons
         if (anchors != anchors_.end()) block.diagonal().array() += anchors->second(m, n);
         act(nodes.corners[f][m], nodes.corners[f][n], block);
       }
+    for (const int b : bonds_of_[patch.fine[f]]) each_of_bond(bonds_[b], nodes, act);
   }
 }
 
@@ -247,7 +278,8 @@ PatchAnswer CellPatches::answer(int cell) const {
   const Patch patch = patch_of(cell);
   const FineNodes nodes = nodes_of(patch);
   if (fine_.of[cell].empty() || std::count(nodes.held.begin(), nodes.held.end(), 1) == 0) return {};
-  const Layers layers(fine_.body, nodes.node, nodes.held);
+  const bool reaches = std::any_of(patch.fine.begin(), patch.fine.end(), [&](int f) { return reaches_[f] != 0; });
+  const Layers layers(fine_.body, nodes.node, nodes.held, reaches ? 2 : 1);
   LayeredMatrix K(layers.unknowns);
   each_coupling(patch, nodes, [&](int m, int n, const Eigen::Matrix3d& k) {
     if (nodes.held[m] || nodes.held[n]) return;

@@ -23,13 +23,13 @@ struct PatchAnswer {
 ///   s = (T^T)^+ sum over the fine cells e of the cell of P_e^T k_e u_e.
 /// Summed over the body these forces are P^T of the fine lattice's: cells that give s for y move as it does.
 /// Where a support holds the surface the fine lattice has its anchors, and the patch's cut does not move; the anchors'
-/// own forces are not among those of the cell.
+/// own forces are not among those of the cell.  Bonds between materials have no forces in a field P U.
 class CellPatches {
  public:
   /// All must outlive it.
   /// @param coarse cells of one size
   /// @param fine cells of the same body
-  /// @param law of both lattices, of Young's modulus 1
+  /// @param law of the materials, of Young's modulus 1 of the first
   /// @param held names of the patches that supports hold
   CellPatches(const CutBody& coarse, const FineCells& fine, const AveragedSprings& law,
               const std::vector<std::string>& held = {});
@@ -51,22 +51,27 @@ class CellPatches {
   FineNodes nodes_of(const Patch& patch) const;
   const Eigen::Matrix<double, 24, 24>& stiffness(int fine) const;
   void add_supports(const std::vector<std::string>& held);
+  void add_bonds();
   Eigen::MatrixXd stress_rows(int cell, const FineNodes& nodes) const;
   Eigen::MatrixXd deformation_rows(int cell, const Patch& patch, const FineNodes& nodes) const;
   Eigen::MatrixXd restriction_matrix(const Patch& patch, const FineNodes& nodes) const;
+  template <class Act>
+  void each_of_bond(const InterfaceBond& bond, const FineNodes& nodes, const Act& act) const;
   template <class Act>
   void each_coupling(const Patch& patch, const FineNodes& nodes, const Act& act) const;
 
   const CutBody& coarse_;
   const FineCells& fine_;
   const AveragedSprings& law_;
-  Eigen::Matrix<double, 24, 24> full_;                    ///< of a full fine cell
-  std::vector<Eigen::Matrix<double, 24, 24>> stiffness_;  ///< of the others
-  std::vector<int> number_;                               ///< of a fine cell among them; -1: full
-  std::map<int, Eigen::Matrix<double, 8, 8>> anchors_;    ///< of fine cells: stiffness between the corners, each axis
-  std::vector<char> at_support_;                          ///< fine nodes of these cells
-  std::vector<std::vector<int>> at_;                      ///< coarse cells at each coarse node
-  std::vector<int> cells_at_;                             ///< how many fine cells have each fine node
+  std::vector<Eigen::Matrix<double, 24, 24>> stiffness_;  ///< of a full fine cell of each material, then of the others
+  std::vector<int> number_;                               ///< of a fine cell among them
+  std::vector<InterfaceBond> bonds_;                      ///< of the fine cells
+  std::vector<std::vector<int>> bonds_of_;                ///< of a fine cell, those that it is the first cell of
+  std::vector<char> reaches_;  ///< whether a bond of a fine cell leads to another cube, as those of slivers do
+  std::map<int, Eigen::Matrix<double, 8, 8>> anchors_;  ///< of fine cells: stiffness between the corners, each axis
+  std::vector<char> at_support_;                        ///< fine nodes of these cells
+  std::vector<std::vector<int>> at_;                    ///< coarse cells at each coarse node
+  std::vector<int> cells_at_;                           ///< how many fine cells have each fine node
 };
 
 }  // namespace springproof

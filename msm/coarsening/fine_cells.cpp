@@ -1,6 +1,7 @@
 #include "msm/coarsening/fine_cells.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 namespace springproof {
@@ -59,6 +60,40 @@ Eigen::SparseMatrix<double, Eigen::RowMajor> prolongation(const CutBody& coarse,
   Eigen::SparseMatrix<double, Eigen::RowMajor> P(fine.body.points.rows(), coarse.points.rows());
   P.setFromTriplets(entries.begin(), entries.end());
   return P;
+}
+
+std::vector<double> shares_of_materials(const FineCells& fine, int cell, std::size_t materials) {
+  std::vector<double> shares(materials, 0);
+  double all = 0;
+  for (const int f : fine.of[cell]) {
+    const CutCell& part = fine.body.cells[f];
+    shares[part.material] += part.filled.fraction;
+    all += part.filled.fraction;
+  }
+  if (all == 0) shares[0] = all = 1;
+  for (double& share : shares) share /= all;
+  return shares;
+}
+
+AveragedSprings mean_springs(const FineCells& fine, int cell, const AveragedSprings& law) {
+  if (law.regions.empty()) return law;
+  const std::vector<double> shares = shares_of_materials(fine, cell, law.regions.size() + 1);
+  AveragedSprings mean = law;
+  mean.regions.clear();
+  mean.hourglass = {0, 0, 0, 0, 0};
+  double log_G = 0, log_K = 0;
+  for (std::size_t m = 0; m < shares.size(); ++m) {
+    const AveragedSprings& of = law.in(static_cast<int>(m));
+    log_G += shares[m] * std::log(of.shear_modulus);
+    log_K += shares[m] * std::log(of.lame_lambda + 2 * of.shear_modulus / 3);
+    for (double HourglassStiffness::*const mode :
+         {&HourglassStiffness::bending, &HourglassStiffness::coupling, &HourglassStiffness::torsion,
+          &HourglassStiffness::twist, &HourglassStiffness::warping})
+      mean.hourglass.*mode += shares[m] * of.hourglass.*mode;
+  }
+  mean.shear_modulus = std::exp(log_G);
+  mean.lame_lambda = std::exp(log_K) - 2 * mean.shear_modulus / 3;
+  return mean;
 }
 
 }  // namespace springproof

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "meshes/voxels/cut_cells.h"
+#include "msm/laws/averaged_springs.h"
 
 namespace springproof {
 
@@ -19,8 +20,8 @@ struct FineCells {
   std::vector<std::vector<int>> of;  ///< fine cells of each coarse cell
 };
 
-/// Cuts a body by planes among which are those of `coarse`.
-/// @param coarse cells of one size
+/// Cuts a body by planes among which are those of `coarse`, each material as a body of its own.
+/// @param coarse cells of one size, of the body as one material
 /// @param mesh tetrahedra of the same body
 /// @param ratio of the edges, from 2
 /// @return the fine cells
@@ -32,5 +33,20 @@ FineCells fine_cells(const CutBody& coarse, const Mesh& mesh, int ratio);
 /// @param fine cells of the same body
 /// @return P, fine x coarse nodes; rows of nodes in no coarse cell are empty
 Eigen::SparseMatrix<double, Eigen::RowMajor> prolongation(const CutBody& coarse, const FineCells& fine);
+
+/// The materials of a body in one of its coarse cells.
+/// @param fine cells of the body
+/// @param cell of the coarse lattice
+/// @param materials how many there are
+/// @return share of each in its volume
+std::vector<double> shares_of_materials(const FineCells& fine, int cell, std::size_t materials);
+
+/// Springs in place of the materials in a coarse cell, by the geometric mean of their moduli over its volume: what a
+/// stiff part does depends on how it is joined to the next cell, and the arithmetic mean would say that it is.
+/// @param fine cells of the body
+/// @param cell of the coarse lattice
+/// @param law of the materials
+/// @return springs of one material
+AveragedSprings mean_springs(const FineCells& fine, int cell, const AveragedSprings& law);
 
 }  // namespace springproof

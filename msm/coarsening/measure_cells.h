@@ -13,10 +13,10 @@ namespace springproof {
 
 /// What cells are measured in.
 struct MeasuredIn {
-  const CutBody& coarse;  ///< the cells, of one size
+  const CutBody& coarse;  ///< the cells, of one size; of a body of several materials as if it were of one
   const FineCells& fine;  ///< of the same body
-  AveragedSprings law;    ///< of both, per unit of Young's modulus; nu <= 0.3: near 1/2 noise times the bulk modulus is
-                          ///< fitted
+  AveragedSprings law;    ///< of its materials, per unit of Young's modulus of the first; nu <= 0.3: near 1/2 noise
+                          ///< times the bulk modulus is fitted
   std::vector<std::string> held = {};  ///< names of the patches that supports hold along all axes
 };
 
@@ -31,7 +31,7 @@ struct MeasuredBody {
   MeasuredCells cells;           ///< of the law that they were measured with
   int as_averaged = 0;           ///< cells that keep the form of averaged springs
   double error = 0;              ///< under loads that were not used: rms displacement off the fine lattice, relative
-  double error_of_averaged = 0;  ///< the same of averaged springs in all cells
+  double error_of_averaged = 0;  ///< the same of averaged springs in all cells, of several materials by their mean
 };
 
 /// What is said of measured cells: how far they are off.
@@ -42,7 +42,8 @@ std::string describe(const MeasuredBody& measured);
 
 /// Measures the cells of a body under loads all over it, each by a problem of the cells around it: cells near a support
 /// on the held body, the others on the free one.  Cells that two settings of the fit leave more than a factor of two
-/// apart, and those without enough fine cells, keep averaged springs.
+/// apart, and those without enough fine cells, keep averaged springs.  In the fine lattice several materials are bonded
+/// at their interfaces; a coarse cell has one form, whatever it holds of them.
 /// @param in the lattices and their law
 /// @param options threads
 /// @return a form per cell, and how far they are off
@@ -66,13 +67,15 @@ class FineTruth {
   Eigen::MatrixXd load_, truth_;  ///< of the fine nodes, a load per column
 };
 
-/// Measured cells in another material: shear moduli in proportion, the bulk modulus on the mean strain as it is there.
+/// Measured cells in other materials: shear moduli in proportion, the bulk modulus on the mean strain as it is there;
+/// in a cell of several materials its harmonic mean.
 /// @param measured forms of `of`
 /// @param cells of the lattice
 /// @param of what they were measured with
-/// @param at averaged springs of the other material, whose bulk over its shear modulus is not smaller
+/// @param at averaged springs of the other materials, whose bulk over their shear moduli are not smaller
+/// @param fine cells of a body of several materials, else nullptr
 /// @return forms of `at`
 MeasuredCells in_material(const MeasuredCells& measured, const CellSet& cells, const AveragedSprings& of,
-                          const AveragedSprings& at);
+                          const AveragedSprings& at, const FineCells* fine = nullptr);
 
 }  // namespace springproof

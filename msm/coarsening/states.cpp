@@ -10,6 +10,7 @@
 #include "msm/embedding/boundary.h"
 #include "msm/embedding/cut_lattice.h"
 #include "msm/embedding/rigid_motions.h"
+#include "msm/embedding/supports.h"
 #include "msm/statics/stiffness_solver.h"
 
 namespace springproof {
@@ -105,8 +106,31 @@ void remove_rigid_motions(const Network& network, Eigen::MatrixXd& fields) {
 
 }  // namespace
 
-MassSpringModel held_cells(const CutBody& body, const std::vector<std::string>& held, const ForceLaw& of_cells) {
-  return {cut_lattice(body, held, 1), {of_cells, Anchors{}}};
+std::vector<IsotropicMaterial> materials_of(const AveragedSprings& law) {
+  std::vector<IsotropicMaterial> materials;
+  for (std::size_t m = 0; m <= law.regions.size(); ++m) {
+    const AveragedSprings& of = law.in(static_cast<int>(m));
+    const double G = of.shear_modulus, lambda = of.lame_lambda, nu = lambda / (2 * (lambda + G));
+    materials.push_back({2 * G * (1 + nu), nu, 1});
+  }
+  return materials;
+}
+
+MassSpringModel held_fine_cells(const FineCells& fine, const std::vector<std::string>& held,
+                                const AveragedSprings& law) {
+  return {cut_lattice(fine.body, held, materials_of(law)), {law, Anchors{}}};
+}
+
+void stiffen_anchors(const CutBody& body, const std::vector<std::string>& held, const FineCells& fine,
+                     const AveragedSprings& law, Network& network) {
+  if (law.regions.empty()) return;
+  const double own = materials_of(law).front().youngs_modulus;
+  auto anchor = network.anchors.begin();
+  for (const std::string& name : held)
+    for (const PatchInCell& part : body.patches.at(name)) {
+      const double there = materials_of(mean_springs(fine, part.cell, law)).front().youngs_modulus;
+      for (std::size_t q = 0; q < anchors_of_part; ++q) (anchor++)->stiffness *= there / own;
+    }
 }
 
 Eigen::MatrixXd loads_all_over(const Network& network, unsigned series) {

@@ -5,17 +5,31 @@
 #include <string>
 #include <vector>
 
-#include "meshes/voxels/cut_cells.h"
+#include "msm/coarsening/fine_cells.h"
 #include "msm/laws/laws.h"
+#include "problem/material.h"
 
 namespace springproof {
 
-/// The cells of a body under a law per unit of Young's modulus, held on patches.
-/// @param body in cells
+/// The materials that averaged springs stand for, of density 1.
+std::vector<IsotropicMaterial> materials_of(const AveragedSprings& law);
+
+/// The fine cells of a body, held on patches.
+/// @param fine cells
 /// @param held names of the patches
-/// @param of_cells the law of the cells
-/// @return network and laws, anchors among them
-MassSpringModel held_cells(const CutBody& body, const std::vector<std::string>& held, const ForceLaw& of_cells);
+/// @param law of its materials
+/// @return network and laws, anchors and bonds among them
+MassSpringModel held_fine_cells(const FineCells& fine, const std::vector<std::string>& held,
+                                const AveragedSprings& law);
+
+/// Anchors of coarse cells in proportion to Young's modulus there.
+/// @param body the coarse cells
+/// @param held names of the patches, in the order of the anchors
+/// @param fine cells of the body
+/// @param law of its materials; anchors are those of the first
+/// @param network whose anchors are changed
+void stiffen_anchors(const CutBody& body, const std::vector<std::string>& held, const FineCells& fine,
+                     const AveragedSprings& law, Network& network);
 
 /// Loads all over a body: Gaussian body forces, of one to three cells' width, and forces and torques at marks, the tips
 /// of its limbs among them, taken by another mark.  On a free body with the acceleration that they cause.
@@ -25,7 +39,7 @@ MassSpringModel held_cells(const CutBody& body, const std::vector<std::string>& 
 Eigen::MatrixXd loads_all_over(const Network& network, unsigned series);
 
 /// Displacements under loads.
-/// @param model held_cells()
+/// @param model of cells, held or free
 /// @param loads one per column [N]; on a free body without resultant
 /// @return [m]; of a free body without rigid motions (least squares by the nodes' volumes)
 /// @throws std::runtime_error if a system is not solved

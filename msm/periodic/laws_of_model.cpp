@@ -31,7 +31,8 @@ MomentumDispersion dispersion_law(const ModelParameters& p, const Network& netwo
   return law;
 }
 
-AveragedSprings averaged_law(const ModelParameters& p, const IsotropicMaterial& material) {
+AveragedSprings averaged_law(const ModelParameters& p, const IsotropicMaterial& material,
+                             const std::vector<IsotropicMaterial>& regions) {
   AveragedSprings law;
   law.shear_modulus = spring_shear_modulus(p, material);
   const bool has_volume_term = p.has(Extension::volume_correction) || p.has(Extension::averaging);
@@ -41,12 +42,20 @@ AveragedSprings averaged_law(const ModelParameters& p, const IsotropicMaterial& 
   law.shift = p.shift;
   law.contraction = material.poisson_ratio / (1 - material.poisson_ratio);
   law.curve = p.curve.value_or(StrainCurve::hencky);
+  for (const IsotropicMaterial& m : regions) law.regions.push_back(averaged_law(p, m));
   return law;
 }
 
-AveragedSprings measuring_law(const ModelParameters& p, const IsotropicMaterial& material) {
-  constexpr double largest_ratio = 0.3;
-  return averaged_law(p, {1, std::min(material.poisson_ratio, largest_ratio), 1});
+AveragedSprings measuring_law(const ModelParameters& p, const IsotropicMaterial& material,
+                              const std::vector<IsotropicMaterial>& regions) {
+  const auto ratio = [](const IsotropicMaterial& m) { return std::min(m.poisson_ratio, 0.3); };
+  const IsotropicMaterial own = {1, ratio(material), 1};
+  std::vector<IsotropicMaterial> others;
+  for (const IsotropicMaterial& m : regions) {
+    const double G = shear_modulus(own) * shear_modulus(m) / shear_modulus(material);
+    others.push_back({2 * G * (1 + ratio(m)), ratio(m), 1});
+  }
+  return averaged_law(p, own, others);
 }
 
 std::vector<ForceLaw> laws_of(const ModelParameters& parameters, const Network& network,

@@ -14,13 +14,20 @@ std::vector<ForceLaw> laws_of(const ModelParameters& p, const Network& network, 
                               WeightStart start = WeightStart::stiffness);
 
 /// The springs of a model averaged over its cells, which for small strains have its moduli.
-AveragedSprings averaged_law(const ModelParameters& p, const IsotropicMaterial& material);
+/// @param p row and options
+/// @param material of the cells
+/// @param regions other materials of the body
+/// @return springs of all
+AveragedSprings averaged_law(const ModelParameters& p, const IsotropicMaterial& material,
+                             const std::vector<IsotropicMaterial>& regions = {});
 
 /// The law that cells are measured with (msm/coarsening/): near nu = 1/2 noise times the bulk modulus would be fitted.
 /// @param p row and options
 /// @param material the cells'
-/// @return averaged springs per unit of Young's modulus, at Poisson's ratio 0.3 at most
-AveragedSprings measuring_law(const ModelParameters& p, const IsotropicMaterial& material);
+/// @param regions other materials of the body
+/// @return averaged springs per unit of Young's modulus, at Poisson's ratio 0.3 at most; shear moduli in proportion
+AveragedSprings measuring_law(const ModelParameters& p, const IsotropicMaterial& material,
+                              const std::vector<IsotropicMaterial>& regions = {});
 
 /// Momentum dispersion of eMSM; symmetric dispersion with p.exact_volumes resolved (empty: k L).
 MomentumDispersion dispersion_law(const ModelParameters& p, const Network& network, const BulkCalibration& calibration,

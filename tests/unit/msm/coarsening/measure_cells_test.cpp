@@ -14,6 +14,7 @@
 #include "msm/periodic/laws_of_model.h"
 #include "msm/topology/cubic_lattice.h"
 #include "support/solids.h"
+#include "support/two_materials.h"
 #include "support/zoo.h"
 
 namespace springproof::measure_cells_test {
@@ -170,6 +171,64 @@ TEST(MeasuredCells, OfAClampedBarAreMeasuredOnTheHeldBody) {
   const double as_if_free = FineTruth(held).error(free.cells);
   EXPECT_GE(as_if_free, 0.1);
   EXPECT_LE(on_its_support.error, 0.4 * as_if_free);
+}
+
+/// A block with balls two cells across that are of another material, in cells of edge 1.
+struct BlockWithBalls {
+  Mesh body;
+  CutBody coarse;
+  FineCells fine;
+
+  BlockWithBalls() {
+    body = test::with_materials(test::solid_of(block_mesh({7, 5, 5}, {28, 20, 20})), [](const Vec3& x) {
+      return std::min((x - Vec3(1.9, 2.3, 2.6)).norm(), (x - Vec3(5.2, 2.7, 2.2)).norm()) < 1;
+    });
+    Mesh as_one = body;
+    as_one.materials.clear();
+    coarse = cut_body(voxel_grid(body, 1), as_one);
+    fine = fine_cells(coarse, body, 3);
+  }
+};
+const BlockWithBalls& block_with_balls() {
+  static const BlockWithBalls block;
+  return block;
+}
+
+AveragedSprings with_region(double relative_modulus) {
+  return averaged_law(test::model("hybmss_avg"), {1, 0.3, 1}, {{relative_modulus, 0.3, 1}});
+}
+
+TEST(CellPatches, RigidMotionsOfSeveralMaterialsHaveNoStress) {
+  const BlockWithBalls& of = block_with_balls();
+  const CellPatches patches(of.coarse, of.fine, with_region(100));
+  const PatchAnswer answer = patches.answer(of.coarse.place({1.9, 2.3, 2.6}).cell);
+  ASSERT_FALSE(answer.nodes.empty());
+  Eigen::VectorXd U(3 * static_cast<Eigen::Index>(answer.nodes.size()));
+  for (std::size_t n = 0; n < answer.nodes.size(); ++n)
+    U.segment<3>(3 * static_cast<Eigen::Index>(n)) =
+        Vec3(1, -2, 3) + Vec3(2, 1, -1).cross(of.coarse.points.row(answer.nodes[n]).transpose());
+  EXPECT_LE((answer.deformation * U).norm(), 1e-8 * answer.deformation.norm() * U.norm());
+  EXPECT_LE((answer.stress * U).norm(), 1e-8 * answer.stress.norm() * U.norm());
+}
+
+TEST(MeasuredCells, OfABodyWithStiffBallsMoveAsTheirBondedFineLattice) {
+  const BlockWithBalls& of = block_with_balls();
+  const MeasuredBody measured = measure_cells({of.coarse, of.fine, with_region(100)}, {.threads = 2});
+  EXPECT_GE(measured.error_of_averaged, 0.1);
+  EXPECT_LE(measured.error, 0.4 * measured.error_of_averaged);
+}
+
+TEST(MeasuredCells, HaveTheHarmonicMeanOfBulkModuliOfSeveralMaterials) {
+  const BlockWithBalls& of = block_with_balls();
+  const AveragedSprings soft = with_region(2),
+                        stiff = averaged_law(test::model("hybmss_avg"), {3, 0.3, 1}, {{6, 0.3, 1}});
+  const CellSet cells = cut_lattice(of.coarse, {}, 1).cells;
+  MeasuredCells measured;
+  for (std::size_t c = 0; c < cells.size(); ++c)
+    measured.add_form(form_of(mean_springs(of.fine, static_cast<int>(c), soft), cells.shape(c)));
+  const MeasuredCells scaled = in_material(measured, cells, soft, stiff, &of.fine);
+  for (std::size_t c = 0; c < cells.size(); ++c)
+    EXPECT_LE((scaled.form_of_cell(c) - 3 * measured.form_of_cell(c)).norm(), 1e-9 * scaled.form_of_cell(c).norm());
 }
 
 TEST(MeasuredCells, StopWhereTheyAreInterrupted) {
