@@ -12,10 +12,10 @@
 #include <optional>
 #include <set>
 
-#include "meshes/locate/enclosed.h"
 #include "meshes/mesher/mesher.h"
 #include "meshes/patches/cut_mesh.h"
 #include "meshes/patches/rule_region.h"
+#include "meshes/regions/enclosed.h"
 #include "meshes/volume.h"
 
 namespace springproof {

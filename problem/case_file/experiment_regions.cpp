@@ -19,7 +19,8 @@ EnclosedPlace read_enclosed(const TomlTable& table, const TomlValue& stl, const 
   const double unit = unit_in(table.value().units, "m").in_si;
   const auto scale = table.find("scale");
   const bool as_body = !scale && !e.body.is_script() && !e.body.states_its_unit();
-  return {e.file.parent_path() / as_text(stl), as_body ? e.body.scale : unit * (scale ? as_number(*scale, positive_number) : 1)};
+  return {e.file.parent_path() / as_text(stl),
+          as_body ? e.body.scale : unit * (scale ? as_number(*scale, positive_number) : 1)};
 }
 
 /// The one thing that says where a region lies.

@@ -1,5 +1,5 @@
 // Depths in closed surfaces.
-#include "meshes/locate/enclosed.h"
+#include "meshes/regions/enclosed.h"
 
 #include <gtest/gtest.h>
 

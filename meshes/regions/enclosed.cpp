@@ -1,4 +1,4 @@
-#include "meshes/locate/enclosed.h"
+#include "meshes/regions/enclosed.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
