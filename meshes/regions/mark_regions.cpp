@@ -196,6 +196,20 @@ class BorderCuts {
     return edges;
   }
 
+  /// Where an edge from a node of the surface ceases to run along it; 0: at once.
+  double leaving(const Enclosed& surface, const Vec3& a, const Vec3& b) const {
+    constexpr double along = 0.02, least = 0.2;  // of the edge: so near is on it, so far it has to run
+    constexpr int halvings = 12;
+    const double near = -along * (b - a).norm();
+    if (surface.depth(a + least * (b - a)) < near) return 0;
+    double s = least, t = 1;
+    for (int n = 0; n < halvings; ++n) {
+      const double middle = (s + t) / 2;
+      (surface.depth(a + middle * (b - a)) < near ? t : s) = middle;
+    }
+    return std::max(least, s - along);
+  }
+
   /// By false position (Illinois).
   double crossing_of_surface(const Enclosed& surface, const Vec3& a, const Vec3& b, double da, double db) const {
     constexpr int most = 60;
@@ -217,6 +231,11 @@ class BorderCuts {
   /// Where on an edge the border is: at a + t (b - a); 0: nowhere between its ends.
   double crossing(const RegionBorder& border, int a, int b) const {
     const double da = depth(border, a), db = depth(border, b);
+    if (border.surface && da == 0 && db < -slack_) return leaving(*border.surface, X(a), X(b));
+    if (border.surface && db == 0 && da < -slack_) {
+      const double t = leaving(*border.surface, X(b), X(a));
+      return t > 0 ? 1 - t : 0;
+    }
     if (std::abs(da) <= slack_ || std::abs(db) <= slack_ || (da > 0) == (db > 0)) return 0;
     if (border.surface) return crossing_of_surface(*border.surface, X(a), X(b), da, db);
     if (!border.is_sphere()) return da / (da - db);
