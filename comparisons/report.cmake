@@ -42,6 +42,7 @@ set(report_assets
     report_js=${report_dir}/report/page/viewer.js
     report_js=${report_dir}/report/page/shapes.js
     report_js=${report_dir}/report/page/problem_picture.js
+    report_js=${report_dir}/report/page/regions.js
     report_js=${report_dir}/report/page/pages.js
     report_js=${report_dir}/report/page/verification.js
     report_js=${report_dir}/report/page/fem_column.js

@@ -34,6 +34,7 @@ int main(int argc, char** argv) {
   if (!file) return fprintf(stderr, "usage: drop_in_c FILE.json\n"), 2;
   text[fread(text, 1, sizeof text - 1, file)] = 0;
   if (strstr(text, "\n \"carried\"")) return fprintf(stderr, "cells of several sizes: forces_in_c.cpp shows how\n"), 2;
+  if (strstr(text, "\n \"bonds\"")) return fprintf(stderr, "several materials: forces_in_c.cpp shows how\n"), 2;
   if (!strstr(text, "\n  \"averaged_springs\"")) return fprintf(stderr, "no averaged springs: forces_in_c.cpp shows springs\n"), 2;
   const char *nodes = "\n \"nodes\"", *cells = "\n \"cells\"", *surface = "\n \"surface\"";
   if (strstr(text, "\"proportions\"")) return fprintf(stderr, "boxes: examples/springs.py has them\n"), 2;

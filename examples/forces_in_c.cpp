@@ -22,6 +22,21 @@ std::vector<T> flat(const json& rows) {
   return out;
 }
 
+/// laws.averaged_springs, or those of one of its regions.
+struct sp_averaged averaged_of(const json& law) {
+  const std::string curve = law.at("curve");
+  return {curve == "hencky"      ? SP_HENCKY
+          : curve == "neo_hooke" ? SP_NEO_HOOKE
+                                 : SP_NEO_HOOKE_ISOCHORIC,
+          law.at("shear_modulus_Pa"),
+          law.at("lame_lambda_Pa"),
+          law.at("bending"),
+          law.at("coupling"),
+          law.at("torsion"),
+          law.at("twist"),
+          law.at("warping")};
+}
+
 int main(int count, char** arguments) try {
   if (count != 2) return std::fprintf(stderr, "usage: forces_in_c FILE.json\n"), 2;
   const json file = json::parse(std::ifstream(arguments[1])), laws = file.at("laws"), derived = file.at("derived");
@@ -43,6 +58,11 @@ int main(int count, char** arguments) try {
   const auto edges = edge.is_array() ? flat<double>(edge) : std::vector<double>(cells.size() / 8, edge);
   const auto carried_nodes = flat<int>(carried.value("nodes", json::array())),
              carried_by = flat<int>(carried.value("by", json::array()));
+  const json bonds = file.value("bonds", json::object());
+  const auto material = flat<int>(file.at("cells").value("material", json::array())),
+             bonded = flat<int>(bonds.value("nodes", json::array()));
+  const auto bond_weights = flat<double>(bonds.value("weights", json::array())),
+             bond_stiffness = flat<double>(bonds.value("stiffness_N_m", json::array()));
   const auto form =
       laws.contains("measured_cells") ? flat<double>(laws.at("measured_cells").at("form_N_m")) : std::vector<double>{};
   const auto energy = [&](std::vector<double> x, double* f) {
@@ -61,21 +81,16 @@ int main(int count, char** arguments) try {
       W += sp_measured(cells.size() / 8, cells.data(), edges[0], parts, form.data(), x.data(), f);
     if (laws.contains("averaged_springs")) {
       const json& law = laws.at("averaged_springs");
-      const std::string curve = law.at("curve");
-      const struct sp_averaged springs = {curve == "hencky"      ? SP_HENCKY
-                                          : curve == "neo_hooke" ? SP_NEO_HOOKE
-                                                                 : SP_NEO_HOOKE_ISOCHORIC,
-                                          law.at("shear_modulus_Pa"),
-                                          law.at("lame_lambda_Pa"),
-                                          law.at("bending"),
-                                          law.at("coupling"),
-                                          law.at("torsion"),
-                                          law.at("twist"),
-                                          law.at("warping")};
+      std::vector<struct sp_averaged> of = {averaged_of(law)};
+      for (const json& region : law.value("regions", json::array())) of.push_back(averaged_of(region));
+      const struct sp_averaged& springs = of[0];
       const std::size_t count = cells.size() / 8;
-      W += edge.is_array() ? sp_averaged_sizes(count, cells.data(), edges.data(), parts, springs, x.data(), f)
-                           : sp_averaged_cut(count, cells.data(), edges[0], parts, springs, x.data(), f);
+      W += !material.empty()
+               ? sp_averaged_materials(count, cells.data(), edges[0], parts, of.data(), material.data(), x.data(), f)
+           : edge.is_array() ? sp_averaged_sizes(count, cells.data(), edges.data(), parts, springs, x.data(), f)
+                             : sp_averaged_cut(count, cells.data(), edges[0], parts, springs, x.data(), f);
     }
+    W += sp_bonds(bonded.size() / 16, bonded.data(), bond_weights.data(), bond_stiffness.data(), x.data(), f);
     if (f) sp_hand_back(carried_nodes.size(), carried_nodes.data(), carried_by.data(), f);
     return W;
   };

@@ -18,7 +18,7 @@ def colours_of(s, n):
     """Nodes of one colour move no force in common: the tangent takes six evaluations of the forces per colour."""
     cells, ends = s.get("cells", {"nodes": np.empty((0, 8), int)})["nodes"], s["springs"]["nodes"].astype(int).reshape(-1, 2)
     reach = sp.identity(n, format="csr")
-    for nodes in (cells, ends, s.get("triangles", np.empty((0, 3), int))):
+    for nodes in (cells, ends, s.get("triangles", np.empty((0, 3), int)), s.get("bonds", {"nodes": np.empty((0, 16), int)})["nodes"]):
         at = sp.csr_matrix((np.ones(nodes.size), (nodes.ravel().astype(int), np.arange(nodes.size) // nodes.shape[1])), (n, len(nodes)))
         reach = reach + at @ at.T
     if "momentum_dispersion" in s["laws"]: reach = reach @ reach  # neighbours of neighbours

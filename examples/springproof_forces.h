@@ -334,6 +334,35 @@ static double sp_averaged_sizes(size_t cells, const int* nodes, const double* ed
   return energy;
 }
 
+/* Of cells of several materials; laws: laws.averaged_springs of the file and those of its regions, material:
+ * cells.material. */
+static double sp_averaged_materials(size_t cells, const int* nodes, double edge, struct sp_parts parts,
+                                    const struct sp_averaged* laws, const int* material, const double* x, double* f) {
+  double energy = 0;
+  for (size_t cell = 0; cell < cells; ++cell)
+    energy += sp_averaged_cell(laws[material[cell]], edge, sp_part_of(parts, cell), nodes + 8 * cell, x, f);
+  return energy;
+}
+
+/* Bonds between the cells of two materials: W = g . K g / 2, g the mean of the first eight nodes of a bond less that of
+ * the others.  nodes, weights: count x 16; K: count x 9 [N/m]. */
+static double sp_bonds(size_t count, const int* nodes, const double* weights, const double* K, const double* x,
+                       double* f) {
+  double energy = 0;
+  for (size_t b = 0; b < count; ++b) {
+    double g[3] = {0};
+    for (size_t n = 16 * b; n < 16 * b + 16; ++n)
+      for (int c = 0; c < 3; ++c) g[c] += (n < 16 * b + 8 ? 1 : -1) * weights[n] * x[3 * nodes[n] + c];
+    for (int c = 0; c < 3; ++c) {
+      const double force = K[9 * b + 3 * c] * g[0] + K[9 * b + 3 * c + 1] * g[1] + K[9 * b + 3 * c + 2] * g[2];
+      energy += 0.5 * force * g[c];
+      for (size_t n = 16 * b; f && n < 16 * b + 16; ++n)
+        f[3 * nodes[n] + c] -= (n < 16 * b + 8 ? 1 : -1) * weights[n] * force;
+    }
+  }
+  return energy;
+}
+
 /* Nodes on edges and faces of larger cells, carried.nodes and .by of the file: each is in the mean of four.  by: count
  * x 4. */
 static void sp_carry(size_t count, const int* nodes, const int* by, double* x) {

@@ -125,6 +125,17 @@ def measured(law, cells, x, f):
     P[np.linalg.det(F) <= 0] = np.nan  # inside out
     add_cells(cells, g, F, q, s[:, 6:].reshape(-1, 4, 3), P, f)
 
+def materials(law, cells):  # the constants and the cells of each material
+    if "material" not in cells: return [(law, cells)]
+    of = [cells["material"] == m for m in range(1 + len(law["regions"]))]
+    return [(one, {key: v[here] if np.shape(v)[:1] == here.shape else v for key, v in cells.items()}) for one, here in zip([law, *law["regions"]], of) if here.any()]
+
+def bonds(s, x, f):  # between the means of cells of two materials
+    b = s["bonds"]
+    w = b["weights"] * np.repeat([1, -1], 8)
+    force = np.einsum("bij,bj->bi", b["stiffness_N_m"].reshape(-1, 3, 3), np.einsum("bn,bni->bi", w, x[b["nodes"]]))
+    np.add.at(f, b["nodes"], -w[:, :, None] * force[:, None, :])
+
 def averaged(law, cells, x, f):
     if law["shift"]: sys.exit("averaged springs with a shift are linear: not here")
     (alpha, c, p, S), l, (g, F, q) = moments(cells), cells["edge_m"], deformation(cells, x)
@@ -223,7 +234,9 @@ def forces(s, x):
     np.add.at(f, ends[:, 1], -pull)
     if law := laws.get("volume_correction"): volume(law, s["cells"]["nodes"], s["cells"]["edge_m"]**3, x, f)
     if law := laws.get("hourglass_correction"): hourglass(law, s["derived"], s["cells"]["nodes"], x - X, f)
-    if law := laws.get("averaged_springs"): averaged(law, s["cells"], x, f)
+    if law := laws.get("averaged_springs"):
+        for of in materials(law, s["cells"]): averaged(*of, x, f)
+    if "bonds" in s: bonds(s, x, f)
     if law := laws.get("measured_cells"): measured(law, s["cells"], x, f)
     if law := laws.get("angular_springs"): angles(law, s["triangles"], x, X, f)
     return hand_back(s, f)

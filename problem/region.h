@@ -1,6 +1,7 @@
 // A part of the body that is of another material.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <variant>
 #include <vector>
@@ -11,9 +12,15 @@
 
 namespace springproof {
 
-/// Where a region lies: in a physical volume of the body's file, by its name or number, or in a box, a ball or a
-/// half-space.
-using RegionPlace = std::variant<std::string, PatchRule::Box, PatchRule::Near, PatchRule::Beyond>;
+/// What a closed surface in a file encloses.
+struct EnclosedPlace {
+  std::filesystem::path file;
+  double scale = 1;  ///< coordinates of the file are multiplied by it
+};
+
+/// Where a region lies: in a physical volume of the body's file, by its name or number, in a box, a ball or a
+/// half-space, or in a closed surface.
+using RegionPlace = std::variant<std::string, PatchRule::Box, PatchRule::Near, PatchRule::Beyond, EnclosedPlace>;
 
 /// A part of the body that is of another material.  Regions are numbered from 1 in the order of the case file; 0 is
 /// what is in none of them, of the body's own material.

@@ -17,6 +17,7 @@
 #include "fem_reference/exchange/reference.h"
 #include "meshes/mesher/mesher.h"
 #include "meshes/patches/select_patches.h"
+#include "meshes/regions/mark_regions.h"
 #include "problem/processes/child.h"
 #include "problem/processes/interrupts.h"
 #include "problem/system/streams.h"
@@ -60,10 +61,6 @@ std::array<Cells, 3> three_grids(const Cells& fine) {
   return grids;
 }
 
-bool is_reduced(const IsotropicMaterial& material) {
-  return material.poisson_ratio > calculix::largest_ratio_full_integration;
-}
-
 /// Near-cubic elements, counts divisible by four; at least eight with reduced integration, as a single element across a
 /// body has zero-energy modes.
 Cells finest_cells(const Experiment& e, const IsotropicMaterial& material, const Cells& given) {
@@ -71,7 +68,7 @@ Cells finest_cells(const Experiment& e, const IsotropicMaterial& material, const
   if (given[0] == 0) {
     const double elements = e.model_kinematics() == Kinematics::linear ? linear_elements : finite_elements;
     const double edge = std::cbrt(e.body.size.prod() / elements);
-    const int fewest = is_reduced(material) ? 2 : 1;
+    const int fewest = calculix::needs_reduced_integration(e, material) ? 2 : 1;
     for (int d = 0; d < 3; ++d)
       cells[d] = 4 * std::max(fewest, static_cast<int>(std::lround(e.body.size[d] / edge / 4)));
   }
@@ -246,7 +243,7 @@ void print_table(const std::vector<SecondOpinion>& rows) {
 void print_title(const Question& q) {
   const auto& e = q.experiment();
   const Cells& c = q.cells[2];
-  const bool reduced = is_reduced(q.material);
+  const bool reduced = calculix::needs_reduced_integration(e, q.material);
   to_stdout("\n{}: nu = {:g}, {}\n", e.name, q.material.poisson_ratio, e.kinematics);
   to_stdout("CalculiX {}: {} up to {} x {} x {}, {}\n", calculix::version(), reduced ? "C3D20R" : "C3D20", c[0], c[1],
             c[2], reduced ? "integrated with 8 points: with 27 they lock as nu nears 1/2" : "fully integrated");
@@ -261,7 +258,8 @@ Question question(const PreparedCase& prepared, const IsotropicMaterial& materia
   const Experiment& e = prepared.experiment;
   Question q{prepared, material, three_grids(finest_cells(e, material, options.cells)), {}, options.time_limit};
   for (const Cells& cells : q.cells) {
-    q.meshes.push_back(mesh_geo(prepared.body.geo, e.body.size, cells));
+    q.meshes.push_back(mesh_geo(prepared.body.geo, e.body.size, cells, {}, volumes_of(e.regions)));
+    mark_regions(e.regions, 1, q.meshes.back());
     select_whole_facets(e.patches, q.meshes.back());
     if (q.meshes.back().grid) grade(e.reference.grading, q.meshes.back());
   }
@@ -318,7 +316,6 @@ const IsotropicMaterial& material_of(const Experiment& experiment, std::optional
 
 int cross_check(const std::filesystem::path& file, const CrossCheckOptions& options) try {
   const Experiment experiment = read_experiment(file);
-  require_one_material(experiment, "cross-check");
   calculix::require_counterpart(experiment);
   if (experiment.body.is_voxels())
     throw InputError(experiment.body.where,

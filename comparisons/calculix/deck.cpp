@@ -110,7 +110,7 @@ std::string label(const std::string& name) {
 }
 
 void check_labels(const Experiment& experiment, const QuadraticMesh& mesh) {
-  std::set<std::string> seen = {"ALL_NODES", "HELD_NODES"};
+  std::set<std::string> seen = {"ALL_NODES", "HELD_NODES", "BODY", "IN_NO_REGION"};
   const auto check = [&](const std::string& name, const std::string& set) {
     if (!seen.insert(set).second || set.size() > 70)
       throw InputError(
@@ -118,6 +118,26 @@ void check_labels(const Experiment& experiment, const QuadraticMesh& mesh) {
   };
   for (const QuadraticPatch& p : mesh.patches) check(p.name, label(p.name));
   for (const Probe& p : experiment.probes) check(p.name, "PROBE_" + label(p.name));
+  for (const MaterialRegion& r : experiment.regions) check(r.name, "REGION_" + label(r.name));
+}
+
+/// A part of the body and its section.
+struct Section {
+  std::string set, name;  ///< the latter of the material
+  IsotropicMaterial material;
+  std::vector<int> elements;
+};
+
+std::vector<Section> sections_of(const Deck& deck) {
+  std::vector<Section> sections = {{"BODY", "SOLID", deck.material, {}}};
+  if (deck.linear.materials.empty()) return sections;
+  sections[0].set = "IN_NO_REGION";
+  for (const MaterialRegion& r : deck.experiment.regions)
+    sections.push_back({"REGION_" + label(r.name), "OF_" + label(r.name), r.material, {}});
+  for (std::size_t e = 0; e < deck.linear.materials.size(); ++e)
+    sections[deck.linear.materials[e]].elements.push_back(static_cast<int>(e));
+  std::erase_if(sections, [](const Section& s) { return s.elements.empty(); });
+  return sections;
 }
 
 std::string one_line(std::string text) {
@@ -199,9 +219,17 @@ void write_probe_sets(const Deck& deck, std::ostream& out) {
 }
 
 void write_material(const Deck& deck, std::ostream& out) {
-  fmt::print(out, "**\n*MATERIAL, NAME=SOLID\n");
-  counterpart(deck.experiment).write(deck.material, out);
-  fmt::print(out, "*DENSITY\n{:.12g}\n*SOLID SECTION, ELSET=BODY, MATERIAL=SOLID\n", deck.material.density);
+  for (const Section& section : sections_of(deck)) {
+    fmt::print(out, "**\n");
+    if (!section.elements.empty()) {
+      fmt::print(out, "*ELSET, ELSET={}\n", section.set);
+      write_numbers(section.elements, out);
+    }
+    fmt::print(out, "*MATERIAL, NAME={}\n", section.name);
+    counterpart(deck.experiment).write(section.material, out);
+    fmt::print(out, "*DENSITY\n{:.12g}\n*SOLID SECTION, ELSET={}, MATERIAL={}\n", section.material.density, section.set,
+               section.name);
+  }
 }
 
 void write_supports(const Deck& deck, double factor, std::ostream& out) {
@@ -257,13 +285,19 @@ std::string kinematics_with_counterpart() {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
+bool needs_reduced_integration(const Experiment& experiment, const IsotropicMaterial& material) {
+  double largest = material.poisson_ratio;
+  for (const MaterialRegion& r : experiment.regions) largest = std::max(largest, r.material.poisson_ratio);
+  return largest > largest_ratio_full_integration;
+}
+
 void require_counterpart(const Experiment& experiment) { counterpart(experiment); }
 
 Deck make_deck(const Experiment& experiment, const IsotropicMaterial& material, const Mesh& mesh) {
   require_counterpart(experiment);
   Deck deck{experiment, material, mesh, quadratic(mesh), {}, {}, {}, Vec3::Zero(), steps_for(experiment)};
   check_labels(experiment, deck.mesh);
-  const bool locks = material.poisson_ratio > largest_ratio_full_integration;
+  const bool locks = needs_reduced_integration(experiment, material);
   deck.element = mesh.hexahedra.empty() ? "C3D10" : locks ? "C3D20R" : "C3D20";
   deck.held = held_components(experiment, deck.mesh);
   deck.forces = concentrated(experiment, material, mesh, deck.mesh);
@@ -282,7 +316,14 @@ void write(const Deck& deck, std::ostream& out) {
 }
 
 NodalVectors external_loads(const Deck& deck) {
-  return deck.forces + deck.material.density * nodal_volumes(deck.mesh) * deck.gravity.transpose();
+  NodalVectors forces = deck.forces;
+  for (const Section& section : sections_of(deck)) {
+    QuadraticMesh part{deck.mesh.nodes, {}, {}};
+    for (const int e : section.elements) part.elements.push_back(deck.mesh.elements[e]);
+    forces += section.material.density * nodal_volumes(section.elements.empty() ? deck.mesh : part) *
+              deck.gravity.transpose();
+  }
+  return forces;
 }
 
 }  // namespace springproof::calculix

@@ -19,8 +19,8 @@ struct HeldComponent {
 
 struct Deck {
   Experiment experiment;
-  IsotropicMaterial material;
-  Mesh linear;  ///< the mesh with corner nodes only
+  IsotropicMaterial material;  ///< of what is in no region
+  Mesh linear;                 ///< the mesh with corner nodes only
   QuadraticMesh mesh;
   std::string element;              ///< "C3D20", "C3D20R" or "C3D10"
   std::vector<HeldComponent> held;  ///< by node, then component
@@ -33,12 +33,17 @@ struct Deck {
 /// not lock.
 inline constexpr double largest_ratio_full_integration = 0.4;
 
+/// Whether some material of a case has a larger one.
+/// @param material of the body where no region is
+bool needs_reduced_integration(const Experiment& experiment, const IsotropicMaterial& material);
+
 /// Kinematics that CalculiX supports: "linear, neo_hooke_isochoric, st_venant_kirchhoff".
 std::string kinematics_with_counterpart();
 
 /// @throws InputError if the case's law has no counterpart, naming those that have.
 void require_counterpart(const Experiment& experiment);
 
+/// @param mesh with Mesh::materials where the case has regions, each of which is a section of its own
 /// @throws InputError as require_counterpart; for an unknown patch, a point force outside the body, two patches of the
 ///   same name once written as a set.
 Deck make_deck(const Experiment& experiment, const IsotropicMaterial& material, const Mesh& mesh);

@@ -60,8 +60,9 @@ struct BodyOfCase {
       tetrahedra;  ///< for a body of voxels: three meshes, coarse to fine (the last is the true body)
   std::vector<int>
       uncut;  ///< numbers of their tetrahedra before borders of patches were cut, which determine the refinement ratios
-  std::shared_ptr<const Surface> facets;  ///< of a surface file, for weight and patches; else none
-  std::map<std::string, Vec3> centroids;  ///< of patches by rules, of those facets
+  std::shared_ptr<const Mesh> of_regions;  ///< with the materials of its cells, the finest; of one material none
+  std::shared_ptr<const Surface> facets;   ///< of a surface file, for weight and patches; else none
+  std::map<std::string, Vec3> centroids;   ///< of patches by rules, of those facets
   double chords = 0;       ///< by what share facets may change displacements where the body is smooth; 0: it is not
   double load_spread = 0;  ///< relative difference of loads by area or volume between the meshes
   std::vector<std::string> notes;  ///< what was repaired or left out of the body

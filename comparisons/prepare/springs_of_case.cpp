@@ -57,10 +57,12 @@ void add_network(const PreparedCase& prepared, const Mesh* carried, SpringsFile&
 void add_cut_network(const PreparedCase& prepared, const Mesh* carried, SpringsFile& file) {
   const Lattice& lattice = prepared.lattices.front();
   const CutBody& body = *lattice.cut;
-  EmbeddedModel built = build_cut_on(lattice, prepared.models.front(), {}, *file.material);
+  std::vector<IsotropicMaterial> materials = materials_of(prepared.experiment.regions);
+  EmbeddedModel built = build_cut_on(lattice, prepared.models.front(), {}, *file.material, materials);
+  materials.insert(materials.begin(), *file.material);
   attach(prepared.experiment.masses, *lattice.mesh, built.embedding, built.model.network);
   file.model = std::move(built.model);
-  erase_laws<Anchors>(file.model);
+  if (file.model.network.bonds.empty()) erase_laws<Anchors>(file.model);
   Embedding loads = embed(body, {}, file.model.network, Mesh{});
   file.loads = std::move(loads.patches);
   file.volumes = std::move(loads.volumes);
@@ -69,8 +71,7 @@ void add_cut_network(const PreparedCase& prepared, const Mesh* carried, SpringsF
     hand_back(body.carried, shares.area, 1);
     hand_back(body.carried, shares.normal);
   }
-  for (const auto& [name, parts] : body.patches)
-    file.anchors[name] = anchors_of_patch(body, name, file.material->youngs_modulus);
+  for (const auto& [name, parts] : body.patches) file.anchors[name] = anchors_of_patch(body, name, materials);
   file.surface = carried_surface(surface_of(prepared, carried), body);
 }
 
@@ -99,6 +100,7 @@ SpringsFile springs_of(const PreparedCase& prepared, const Mesh* carried) {
   SpringsFile file;
   file.material = prepared.experiment.materials.front();
   file.density = file.material->density;
+  for (const MaterialRegion& r : prepared.experiment.regions) file.regions.push_back({r.name, r.material});
   parameters.cut.value_or(false) ? add_cut_network(prepared, carried, file) : add_network(prepared, carried, file);
   file.origin = {"springproof " SPRINGPROOF_VERSION, choice.name, choice.options,
                  prepared.experiment.text.empty() ? prepared.body.geo.filename().string()

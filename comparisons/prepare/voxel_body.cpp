@@ -10,6 +10,7 @@
 #include "comparisons/judge/measures.h"
 #include "comparisons/prepare/load_resultants.h"
 #include "comparisons/prepare/refined_lattice.h"
+#include "comparisons/prepare/region_notes.h"
 #include "comparisons/prepare/sampling.h"
 #include "meshes/locate/facet_tree.h"
 #include "meshes/locate/locate.h"
@@ -123,6 +124,7 @@ void mesh_the_body(MeshRequest request, PreparedCase& prepared, std::string& hin
     if (m + 1 == body.coarser.size()) prepared.body.notes.insert(prepared.body.notes.end(), notes.begin(), notes.end());
     prepared.body.tetrahedra.push_back(std::make_shared<Mesh>(std::move(mesh)));
   }
+  if (!e.regions.empty()) prepared.body.of_regions = prepared.body.tetrahedra.back();
 }
 
 std::vector<double> voxel_edges(const Body& body, double volume) {
@@ -258,8 +260,12 @@ void cut_lattices(PreparedCase& prepared) {
     add_cubes(grid);
     const auto is_cut = [](const ModelParameters& p) { return p.cut.value_or(false); };
     if (std::none_of(prepared.models.begin(), prepared.models.end(), is_cut)) continue;
+    if (!prepared.experiment.regions.empty()) require_resolved(prepared.experiment.regions, true_body, edge);
     CutBody cut = cut_body(grid, true_body);
     prepared.body.notes.push_back(cut_cells_note(prepared, cut));
+    if (!prepared.experiment.regions.empty() && edge == edges.back())
+      for (std::string& note : region_notes(prepared.experiment.regions, true_body, edge))
+        prepared.body.notes.push_back(std::move(note));
     prepared.body.notes.insert(prepared.body.notes.end(), cut.notes.begin(), cut.notes.end());
     prepared.lattices.back().cut = std::make_shared<CutBody>(std::move(cut));
     const auto is_measured = [](const ModelParameters& p) { return p.coarsened.value_or(false); };

@@ -327,14 +327,23 @@ std::vector<std::map<std::string, double>> measures_on_grids(const PreparedCase&
 
 }  // namespace
 
+/// Of a region the smaller of its own and the body's, whose strain it has at most.
+static double modulus_behind(const std::string& measure, const Experiment& e) {
+  double modulus = e.materials.front().youngs_modulus;
+  for (const MaterialRegion& r : e.regions)
+    if (measure.starts_with("region." + r.name + ".")) modulus = std::min(modulus, r.material.youngs_modulus);
+  return modulus;
+}
+
 std::map<std::string, ReferenceValue> limits_of(const PreparedCase& prepared, const ElementGrids& e) {
   const std::vector<std::map<std::string, double>> values = measures_on_grids(prepared, e);
   const Experiment& experiment = prepared.experiment;
-  const BodyScale body{prepared.body.size.norm(), e.grids[2].displacement.rowwise().norm().maxCoeff(),
-                       force_of_loads(prepared), experiment.materials.front().youngs_modulus};
+  BodyScale body{prepared.body.size.norm(), e.grids[2].displacement.rowwise().norm().maxCoeff(),
+                 force_of_loads(prepared)};
   const std::map<std::string, std::string> rims = rims_at_probes(prepared);
   std::map<std::string, ReferenceValue> limits;
   for (const auto& [measure, fine] : values[2]) {
+    body.youngs_modulus = modulus_behind(measure, experiment);
     const double scale = scale_of(measure, values[2], body);
     const std::vector<double> sequence = {values[0].at(measure), values[1].at(measure), fine};
     ReferenceValue& limit = limits[measure];

@@ -31,16 +31,17 @@ void write_cells(const std::filesystem::path& file, const CutBody& cut, const No
                  const VtuNotes& notes) {
   const auto mesh = std::make_shared<Mesh>();
   mesh->nodes = cut.points;
-  std::vector<double> filled, edge;
+  std::vector<double> filled, edge, material;
   for (const CutCell& cell : cut.cells) {
     mesh->hexahedra.push_back(cell.corners);
     filled.push_back(cell.filled.fraction);
     edge.push_back(cell.size * cut.grid.edge);
+    material.push_back(cell.material);
   }
   Field field;
   field.mesh = mesh;
   field.displacement = displacement.topRows(cut.points.rows());
-  write_vtu(file, field, {}, notes, {{"filled_fraction", filled}, {"edge_m", edge}});
+  write_vtu(file, field, {}, notes, {{"filled_fraction", filled}, {"edge_m", edge}, {"material", material}});
 }
 
 void write_series(const CaseResult& result, const std::filesystem::path& folder) {

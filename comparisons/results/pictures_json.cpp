@@ -132,7 +132,8 @@ Json pictures_to_json(const CaseResult& result) {
           {"marks", marks},
           {"meshes", meshes},
           {"pictures", pictures},
-          {"cracks", cracks}};
+          {"cracks", cracks},
+          {"section", result.section_svg}};
 }
 
 }  // namespace springproof

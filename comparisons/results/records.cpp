@@ -129,6 +129,7 @@ Json to_json(const CaseResult& result) {
               {"published", result.published},
               {"validation", result.validation},
               {"validated", result.validated},
+              {"regions", result.regions},
               {"cautions", cautions(result)},
               {"notes", result.notes}});
   return out;

@@ -267,6 +267,17 @@ struct Part {
   std::vector<VariedRun> varied;
 };
 
+/// A part of the body by its material; the first is what is in no region.
+struct RegionRecord {
+  std::string name;    ///< "": in no region
+  std::string colour;  ///< in the section
+  double youngs_modulus_Pa = 0;
+  double poisson_ratio = 0;
+  double density_kg_m3 = 0;
+  double volume_m3 = 0;
+  std::vector<int> cells;  ///< of the springs, at each resolution; cut ones counted whole
+};
+
 struct CaseResult : Part {
   Experiment experiment;     ///< as read
   Vec3 size = Vec3::Zero();  ///< of the body [m]; for a body of voxels that of its bounding box
@@ -279,8 +290,10 @@ struct CaseResult : Part {
   std::vector<Check> checks;
   std::vector<PublishedRow> published;
   std::vector<ValidatedValue> validation;
-  std::string validated;           ///< what `validation` says, in sentences
-  std::vector<std::string> notes;  ///< what was repaired or left out of the body
+  std::string validated;              ///< what `validation` says, in sentences
+  std::vector<RegionRecord> regions;  ///< of a body of several materials
+  std::string section_svg;            ///< of the same, a plane section through them
+  std::vector<std::string> notes;     ///< what was repaired or left out of the body
 };
 
 /// {812, 0, 0} stands for 812 tetrahedra, which form no grid.

@@ -37,6 +37,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(InputShare, input, change, alternative)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ValidatedValue, model, poisson_ratio, cells, name, quantity, unit, load_case, fitted,
                                    measured, u_measured, simulated, u_numerical, u_input, error, u_val, ratio,
                                    not_judged, springs, resolution, inputs, source, licence, history, time)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RegionRecord, name, colour, youngs_modulus_Pa, poisson_ratio, density_kg_m3,
+                                   volume_m3, cells)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Part, runs, rows, references, pictures, lines, histories, splits, deformations,
                                    cracks, limits, varied)
 

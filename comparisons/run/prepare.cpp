@@ -192,6 +192,7 @@ void check_grids_of_reference(PreparedCase& prepared) {
     const std::vector<std::string> notes = mark_regions(e.regions, 1, mesh);
     if (divisor == 1) prepared.body.notes.insert(prepared.body.notes.end(), notes.begin(), notes.end());
     select_whole_facets(e.patches, mesh);
+    if (divisor == 1 && !e.regions.empty()) prepared.body.of_regions = std::make_shared<Mesh>(std::move(mesh));
   }
 }
 
@@ -302,11 +303,22 @@ void try_lattice(PreparedCase& prepared, const Lattice& lattice) {
   at_measured_points(prepared, lattice, u);
 }
 
+double mass_of_body(const PreparedCase& prepared) {
+  const Experiment& e = prepared.experiment;
+  const Mesh& mesh = prepared.body.of_regions ? *prepared.body.of_regions : *prepared.lattices.front().mesh;
+  if (!prepared.body.of_regions) return e.materials.front().density * volume(mesh, mesh.nodes);
+  const Eigen::VectorXd volumes = cell_volumes(mesh, mesh.nodes);
+  double mass = 0;
+  for (std::size_t c = 0; c < mesh.materials.size(); ++c)
+    mass += volumes[static_cast<Eigen::Index>(c)] *
+            (mesh.materials[c] == 0 ? e.materials.front() : e.regions[mesh.materials[c] - 1].material).density;
+  return mass;
+}
+
 /// Notes masses that are many times as heavy as the body.
 void note_heavy_masses(PreparedCase& prepared) {
   constexpr double many = 10;
-  const Mesh& mesh = *prepared.lattices.front().mesh;
-  const double body = prepared.experiment.materials.front().density * volume(mesh, mesh.nodes);
+  const double body = mass_of_body(prepared);
   for (const AttachedMass& mass : prepared.experiment.masses)
     if (mass.mass > many * body)
       prepared.body.notes.push_back(fmt::format("mass '{}' is {:.3g} times as heavy as the body, which has {:.3g} kg",

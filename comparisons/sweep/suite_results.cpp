@@ -19,7 +19,9 @@
 #include "comparisons/report/headline.h"
 #include "comparisons/report/report.h"
 #include "comparisons/results/crack_picture.h"
+#include "comparisons/results/section_picture.h"
 #include "comparisons/sweep/find_cases.h"
+#include "meshes/volume.h"
 #include "msm/parameters/made_of.h"
 #include "problem/case_file/external.h"
 #include "problem/files/file_name.h"
@@ -74,6 +76,25 @@ std::string made_of(const PreparedCase& p, std::size_t model) {
   return is_own_model(choice) ? "springs of another program" : "another program's, for comparison";
 }
 
+/// What is in no region, and each region.
+std::vector<RegionRecord> regions_of(const PreparedCase& p) {
+  const Experiment& e = p.experiment;
+  const Mesh& body = *p.body.of_regions;
+  const Eigen::VectorXd volumes = cell_volumes(body, body.nodes);
+  std::vector<RegionRecord> all;
+  for (std::size_t r = 0; r <= e.regions.size(); ++r) {
+    const IsotropicMaterial& m = r == 0 ? e.materials.front() : e.regions[r - 1].material;
+    RegionRecord& record = all.emplace_back(RegionRecord{
+        r == 0 ? "" : e.regions[r - 1].name, material_colour(r), m.youngs_modulus, m.poisson_ratio, m.density, 0, {}});
+    for (std::size_t c = 0; c < body.materials.size(); ++c)
+      if (body.materials[c] == r) record.volume_m3 += volumes[static_cast<Eigen::Index>(c)];
+    for (const Lattice& lattice : p.lattices)
+      if (lattice.cut)
+        record.cells.push_back(static_cast<int>(std::ranges::count(lattice.cut->cells, int(r), &CutCell::material)));
+  }
+  return all;
+}
+
 /// The law, as `kinematics` names it, that a curve follows or is tuned to.
 const char* law_of(StrainCurve curve) {
   return name_of(curve == StrainCurve::springs_hencky      ? StrainCurve::hencky
@@ -95,6 +116,10 @@ CaseResult case_of(const PreparedCase& p) {
   result.size = p.body.size;
   for (const Lattice& lattice : p.lattices) result.cells.push_back(lattice.cells);
   result.notes = p.body.notes;
+  if (p.body.of_regions) {
+    result.regions = regions_of(p);
+    result.section_svg = section_svg(*p.body.of_regions);
+  }
   for (std::size_t m = 0; m < p.models.size(); ++m) {
     const std::string& label = p.experiment.models[m].label;
     result.made_of[label] = made_of(p, m);

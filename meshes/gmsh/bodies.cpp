@@ -398,6 +398,7 @@ MeshedBody mesh_file(const MeshRequest& r) try {
   require_kind(r.file);
   const std::string extension = extension_of(r.file);
   MeshedBody body = r.kind.vertices              ? vertices_of(r)
+                    : r.kind.closed              ? closed_surface_of(r)
                     : extension == ".geo"        ? mesh_script(r)
                     : extension == ".msh"        ? mesh_msh(r)
                     : is_surface_file(extension) ? mesh_surface(r)

@@ -28,6 +28,9 @@ MeshedBody mesh_surface(const MeshRequest& request);
 /// The vertices of an STL, OBJ, PLY or mesh file, as MeshKind::vertices says.
 MeshedBody vertices_of(const MeshRequest& request);
 
+/// The closed surface of an STL, OBJ or PLY file, as MeshKind::closed says.
+MeshedBody closed_surface_of(const MeshRequest& request);
+
 /// The vertices of a mesh file, by ascending number, and its triangles.
 Surface vertices_of_msh(const MeshRequest& request);
 

@@ -12,6 +12,7 @@
 #include "meshes/gmsh/split_cells.h"
 #include "meshes/halved.h"
 #include "meshes/patches/transfer_patches.h"
+#include "meshes/regions/mark_regions.h"
 #include "meshes/volume.h"
 #include "problem/processes/child.h"
 
@@ -105,8 +106,31 @@ MeshedBody filled_anew(const MeshRequest& r, const MeshedBody& own) {
   return body;
 }
 
-/// The body of the file's cells, which say where its regions are: cut into eight until they are as small as asked for.
-/// @throws InputError if they become too many.
+/// The same with the regions of the file's cells, along whose borders tetrahedra are cut.
+MeshedBody filled_anew_with_regions(const MeshRequest& r, const MeshedBody& own) {
+  MeshRequest whole = r;
+  whole.volumes.clear();
+  MeshedBody body = filled_anew(whole, own);
+  std::vector<Mesh*> meshes = {&body.mesh};
+  for (Mesh& mesh : body.coarser) meshes.push_back(&mesh);
+  const double finest = static_cast<double>(body.mesh.tetrahedra.size());
+  for (std::size_t number = 1; number <= r.volumes.size(); ++number) {
+    Mesh region;
+    region.nodes = own.mesh.nodes;
+    for (std::size_t c = 0; c < own.mesh.tetrahedra.size(); ++c)
+      if (own.mesh.materials[c] == number) region.tetrahedra.push_back(own.mesh.tetrahedra[c]);
+    if (region.tetrahedra.empty()) continue;
+    const Surface surface = outside_of(region);
+    for (Mesh* mesh : meshes)
+      mark_enclosed(surface, static_cast<std::uint8_t>(number),
+                    std::cbrt(finest / static_cast<double>(mesh->tetrahedra.size())), *mesh);
+  }
+  body.notes.push_back("the borders of its regions are cut into these tetrahedra");
+  return body;
+}
+
+/// The body of the file's cells, which say where its regions are: cut into eight until they are as small as asked for,
+/// or filled anew if they became too many.
 MeshedBody cut_finer(const MeshRequest& r, MeshedBody own) {
   constexpr std::size_t most = 400'000;  // of quadratic elements some 2 million unknowns
   const double inside = volume(own.mesh, own.mesh.nodes);
@@ -115,12 +139,7 @@ MeshedBody cut_finer(const MeshRequest& r, MeshedBody own) {
   const auto times =
       std::max(r.coarser.size(), static_cast<std::size_t>(std::max(0.0, std::round(std::log2(coarsest / edge)))));
   const double finest = static_cast<double>(own.mesh.tetrahedra.size()) * std::pow(8, times);
-  if (finest > most)
-    refuse(r.file,
-           fmt::format("its {} tetrahedra, cut into eight {} times, would be {:.2g} (allowed: {:.2g}, as the "
-                       "regions of a mesh file are those of its cells; a coarser file, a .step or .geo file, or no "
-                       "reference: elements = [])",
-                       own.mesh.tetrahedra.size(), times, finest, double(most)));
+  if (finest > most) return filled_anew_with_regions(r, own);
   MeshedBody body{own.mesh, own.notes, r.scale * coarsest / std::pow(2, times), {}, {}, 0};
   for (std::size_t i = 0; i < times; ++i) {
     if (times - i <= r.coarser.size()) body.coarser.push_back(body.mesh);

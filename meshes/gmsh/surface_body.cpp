@@ -183,7 +183,7 @@ void add_parts(const Surface& raw, Mesh& mesh) {
 MeshedBody fill_surface(const MeshRequest& request, const Surface& raw) {
   if (has_volumes(request))
     refuse(request.file,
-           "holds a surface, and so no physical volume for a [[region]] (allowed: box_m, near or beyond)");
+           "holds a surface, and so no physical volume for a [[region]] (allowed: stl, box_m, near or beyond)");
   auto [surface, notes] = check_surface(raw, request.file.string());
   const double inside = volume(surface);
   MeshRequest r = request;
@@ -210,6 +210,15 @@ Surface read_surface(const std::filesystem::path& file) {
 }  // namespace
 
 MeshedBody mesh_surface(const MeshRequest& r) { return fill_surface(r, read_surface(r.file)); }
+
+MeshedBody closed_surface_of(const MeshRequest& r) {
+  CheckedSurface checked = check_surface(read_surface(r.file), r.file.string());
+  MeshedBody body;
+  body.mesh = mesh_of(checked.surface, "triangles");
+  body.facets = std::move(checked.surface);
+  body.notes = std::move(checked.notes);
+  return body;
+}
 
 MeshedBody vertices_of(const MeshRequest& r) {
   const Surface surface = extension_of(r.file) == ".msh" ? vertices_of_msh(r) : read_surface(r.file);

@@ -114,7 +114,10 @@ void check(const MeshRequest& r) {
   if (!r.size.isZero()) require_size(r.file, r.size, r.size.maxCoeff());
   if (r.kind.vertices && extension != ".msh" && !is_surface_file(extension))
     refuse(r.file, "has no vertices of its own (allowed: .stl, .obj, .ply, .msh)");
-  if (r.edge == 0 && r.tetrahedra == 0 && !r.kind.vertices && extension != ".geo" && extension != ".msh")
+  if (r.kind.closed && !is_surface_file(extension))
+    refuse(r.file, "is no file of a surface (allowed: .stl, .obj, .ply)");
+  if (r.edge == 0 && r.tetrahedra == 0 && !r.kind.vertices && !r.kind.closed && extension != ".geo" &&
+      extension != ".msh")
     refuse(r.file, "edge: the length of the tetrahedra's edges is needed (allowed: > 0 [m])");
 }
 
@@ -212,22 +215,34 @@ MeshedBody mesh_to_cut(MeshRequest request) {
   }
 }
 
-Mesh mesh_geo(const fs::path& geo, const Vec3& size, const Cells& cells, MeshKind kind,
-              const std::vector<std::string>& volumes) {
-  require_file(geo, "a script for gmsh, NAME.geo");
-  if (!size.allFinite() || !(size.minCoeff() > 0)) refuse(geo, "size_m: three positive lengths are needed");
-  if (*std::min_element(cells.begin(), cells.end()) < 1) refuse(geo, "cells: three counts >= 1 are needed");
-  const MeshRequest request{.file = geo, .size = size, .cells = cells, .kind = kind, .volumes = volumes};
+namespace {
+
+/// Meshes what a process asks for but once.
+MeshedBody meshed_once(const MeshRequest& request) {
   static std::mutex mutex;
-  static std::map<std::string, Mesh> made;
+  static std::map<std::string, MeshedBody> made;
   const std::string key = to_cbor(request);
   {
     const std::lock_guard lock(mutex);
     if (const auto before = made.find(key); before != made.end()) return before->second;
   }
-  Mesh mesh = mesh_body(request).mesh;
+  MeshedBody body = mesh_body(request);
   const std::lock_guard lock(mutex);
-  return made.emplace(key, std::move(mesh)).first->second;
+  return made.emplace(key, std::move(body)).first->second;
+}
+
+}  // namespace
+
+MeshedBody closed_surface(const fs::path& file, double scale) {
+  return meshed_once({.file = file, .kind = {.closed = true}, .scale = scale});
+}
+
+Mesh mesh_geo(const fs::path& geo, const Vec3& size, const Cells& cells, MeshKind kind,
+              const std::vector<std::string>& volumes) {
+  require_file(geo, "a script for gmsh, NAME.geo");
+  if (!size.allFinite() || !(size.minCoeff() > 0)) refuse(geo, "size_m: three positive lengths are needed");
+  if (*std::min_element(cells.begin(), cells.end()) < 1) refuse(geo, "cells: three counts >= 1 are needed");
+  return meshed_once({.file = geo, .size = size, .cells = cells, .kind = kind, .volumes = volumes}).mesh;
 }
 
 }  // namespace springproof

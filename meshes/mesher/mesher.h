@@ -28,6 +28,7 @@ struct MeshKind {
   bool second_order = false;  ///< hexahedra whose edges follow a curved surface (Mesh::curved)
   bool vertices = false;      ///< of an .stl, .obj, .ply or .msh: its vertices in its order, and its triangles as the
                               ///< patch "triangles", without cells
+  bool closed = false;        ///< of an .stl, .obj or .ply: its surface alone, closed and repaired (surface_check.h)
 };
 
 /// A body in a file:
@@ -94,5 +95,9 @@ MeshedBody mesh_to_cut(MeshRequest request);
 /// @param volumes as MeshRequest::volumes
 Mesh mesh_geo(const std::filesystem::path& geo, const Vec3& size, const Cells& cells, MeshKind kind = {},
               const std::vector<std::string>& volumes = {});
+
+/// A closed surface in a file, repaired, as MeshedBody::facets.  A process reads the same but once.  Thread-safe.
+/// @throws as mesh_body
+MeshedBody closed_surface(const std::filesystem::path& file, double scale);
 
 }  // namespace springproof

@@ -80,6 +80,7 @@ std::string to_cbor(const MeshRequest& r) {
                {"tetrahedra", r.kind.tetrahedra},
                {"second_order", r.kind.second_order},
                {"vertices", r.kind.vertices},
+               {"closed", r.kind.closed},
                {"edge", r.edge},
                {"about", r.tetrahedra},
                {"coarser", r.coarser},
@@ -93,7 +94,7 @@ MeshRequest mesh_request_from_cbor(const std::string& bytes) {
   r.file = std::string(j.at("file"));
   r.size = j.at("size").get<Vec3>();
   r.cells = j.at("cells");
-  r.kind = {j.at("tetrahedra"), j.at("second_order"), j.at("vertices")};
+  r.kind = {j.at("tetrahedra"), j.at("second_order"), j.at("vertices"), j.at("closed")};
   r.edge = j.at("edge");
   r.tetrahedra = j.at("about");
   r.coarser = j.at("coarser").get<std::vector<double>>();

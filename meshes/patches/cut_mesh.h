@@ -41,6 +41,9 @@ class CutMesh {
   /// Bisects the edge in the middle, longer ones beside it first: shapes stay as they are (Rivara).
   void refine(int a, int b);
 
+  /// Whether cells of several materials meet in a node.
+  bool is_between_materials(int node) const;
+
   /// Moves a node if that keeps the cells' shapes, the borders of patches and regions and, to 0.03 of the shortest
   /// edge, a smooth surface.
   bool slide(int node, const Vec3& to);
@@ -56,7 +59,6 @@ class CutMesh {
 
  private:
   bool is_edge(int a, int b) const;
-  bool is_between_materials(int node) const;
   double length(int a, int b) const { return (points()[a] - points()[b]).norm(); }
   double shape(const Tetrahedron& cell) const;
   double worst_shape(int node) const;

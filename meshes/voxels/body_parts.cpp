@@ -1,6 +1,7 @@
 #include "meshes/voxels/body_parts.h"
 
 #include <Eigen/Geometry>
+#include <map>
 #include <stdexcept>
 #include <tuple>
 
@@ -60,6 +61,7 @@ BodyParts::BodyParts(const VoxelGrid& grid, const Mesh& body) : grid_(grid), bod
                  });
   }
   begin.push_back(static_cast<int>(cube.size()));
+  find_mixed_cubes();
   connect();
 }
 
@@ -126,6 +128,35 @@ bool BodyParts::share_a_face(long a, long b) const {
   return touching == 1 && overlapping == 2;
 }
 
+void BodyParts::find_mixed_cubes() {
+  std::map<std::pair<long, int>, double> volumes;
+  for (int t = 0; t + 1 < static_cast<int>(begin.size()); ++t)
+    for (int p = begin[t]; p < begin[t + 1]; ++p) volumes[{cube[p], material(t)}] += moments[p].volume;
+  long last = -1;
+  for (const auto& [at, volume] : volumes) {
+    if (volume < least_fraction * std::pow(size(at.first), 3)) continue;
+    if (at.first == last) mixed_.insert(last);
+    last = at.first;
+  }
+}
+
+/// Whether a corner of their common face is one of a mixed cube.
+bool BodyParts::touch_a_mixed_cube(long a, long b) const {
+  const std::array<int, 3> i = index(a), j = index(b);
+  for (int corner = 0; corner < 8; ++corner)
+    for (int around = 0; around < 8; ++around) {
+      std::array<int, 3> at;
+      bool in_grid = true;
+      for (int d = 0; d < 3; ++d) {
+        const int low = std::max(i[d], j[d]), high = std::min(i[d] + size(a), j[d] + size(b));
+        at[d] = (corner >> d & 1 ? high : low) - (around >> d & 1);
+        in_grid &= at[d] >= 0 && at[d] < grid_.cells[d];
+      }
+      if (in_grid && mixed_.contains(cube_number(grid_, cell_at(grid_, at)))) return true;
+    }
+  return false;
+}
+
 void BodyParts::connect() {
   for (std::size_t t = 0; t + 1 < begin.size(); ++t)  // a convex solid in two cubes fills some of the face between them
     for (int p = begin[t]; p < begin[t + 1]; ++p)
@@ -144,7 +175,11 @@ void BodyParts::connect(const std::array<int, 3>& facet, int a, int b) {
     const int p = find(a, at), q = find(b, beyond);
     if (p < 0 || q < 0) return;
     if (at != beyond) {
-      if (share_a_face(at, beyond)) to_next.push_back({p, q});
+      if (!share_a_face(at, beyond)) return;
+      if (material(a) == material(b) || !touch_a_mixed_cube(at, beyond))
+        to_next.push_back({p, q});
+      else
+        add_interface(p, q, a, b, part);
     } else if (material(a) == material(b))
       in_cube.push_back({p, q});
     else

@@ -1,6 +1,7 @@
 // The parts of a body of tetrahedra in the cubes of a lattice, and which of them are connected.
 #pragma once
 
+#include <set>
 #include <vector>
 
 #include "meshes/mesh.h"
@@ -72,6 +73,8 @@ class BodyParts {
   void list_facets();
   int find_or_add(long cube);
   bool share_a_face(long a, long b) const;
+  void find_mixed_cubes();
+  bool touch_a_mixed_cube(long a, long b) const;
   void connect();
   void connect(const std::array<int, 3>& facet, int a, int b);
   void add_interface(int p, int q, int a, int b, TriangleCorners part);
@@ -80,6 +83,7 @@ class BodyParts {
   const Mesh& body_;
   std::vector<TetrahedronFacet> facets_;
   std::vector<Vec3> X_;
+  std::set<long> mixed_;  ///< cubes in which several materials have cells
 };
 
 /// What is connected within a cube, as one solid.

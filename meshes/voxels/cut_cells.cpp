@@ -353,17 +353,6 @@ void require_cells_of_all_materials(const Mesh& body, const CutBody& cut) {
         *missing.begin(), cut.grid.edge));
 }
 
-/// Two cells with all corners in common deform alike: a stiff one would stiffen the whole cube.
-void refuse_materials_on_same_corners(const CutBody& cut) {
-  std::map<Hexahedron, int> material;
-  for (const CutCell& c : cut.cells)
-    if (material.emplace(c.corners, c.material).first->second != c.material)
-      throw std::invalid_argument(fmt::format(
-          "voxels: materials meet in planes of the lattice above and below a cube of {:.6g} m in which they "
-          "meet too, and would deform alike in it; take voxels of another edge, or move the region",
-          cut.grid.edge));
-}
-
 }  // namespace
 
 CutBody cut_body(const VoxelGrid& grid, const Mesh& body) {
@@ -389,7 +378,6 @@ CutBody cut_body(const VoxelGrid& grid, const Mesh& body) {
   for (std::size_t c = 0; c < out.cells.size(); ++c)
     out.cells_of_[cube_number(grid, out.cells[c].index)].push_back(static_cast<int>(c));
   number_points(pieces, out);
-  refuse_materials_on_same_corners(out);
   out.locator_ = std::make_shared<TetrahedronLocator>(body.nodes, body.tetrahedra);
   out.part_begin_ = parts.begin;
   for (std::size_t p = 0; p < parts.cube.size(); ++p)

@@ -69,7 +69,7 @@ std::pair<MassSpringModel, Embedding> anchored(const SpringsFile& file, const st
     throw InputError("/nodes: has no weight_kg, by which cut cells share the weight of the body");
   std::pair<MassSpringModel, Embedding> result{file.model, {}};
   auto& [model, embedding] = result;
-  model.laws.emplace_back(Anchors{});
+  if (!law_of<Anchors>(model)) model.laws.emplace_back(Anchors{});
   Network& network = model.network;
   embed_mesh(mesh, network, embedding);
   add_anchors(file, held, network, embedding);

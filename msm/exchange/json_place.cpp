@@ -73,6 +73,13 @@ std::vector<std::string> JsonPlace::keys() const {
   return names;
 }
 
+std::vector<JsonPlace> JsonPlace::items() const {
+  if (!value_->is_array()) refuse("is " + shown(*value_), "a list");
+  std::vector<JsonPlace> all;
+  for (const json& item : *value_) all.emplace_back(item, fmt::format("{}/{}", pointer_, all.size()), *file_);
+  return all;
+}
+
 void JsonPlace::require_known(const std::vector<std::string>& known) const {
   for (const std::string& key : keys())
     if (std::find(known.begin(), known.end(), key) == known.end())

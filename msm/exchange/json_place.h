@@ -24,6 +24,7 @@ class JsonPlace {
   JsonPlace at(const std::string& key) const;  ///< a required key of an object
   std::optional<JsonPlace> find(const std::string& key) const;
   std::vector<std::string> keys() const;
+  std::vector<JsonPlace> items() const;  ///< of a list
   /// @throws InputError at the first key that is not among `known`.
   void require_known(const std::vector<std::string>& known) const;
 

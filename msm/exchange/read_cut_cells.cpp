@@ -2,15 +2,18 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "msm/exchange/springs_document.h"
 
 namespace springproof {
 namespace {
 
-constexpr double at_rest = 1e-6;  // of an edge
+constexpr double at_rest = 1e-6;  // of an edge, and of other numbers that follow from each other
+constexpr std::size_t most_regions = 255;
 
 std::vector<Anchor> read_anchors(const JsonPlace& place, const Network& network) {
   place.require_known({"position_m", "nodes", "weights", "stiffness_N_m"});
@@ -32,6 +35,61 @@ std::vector<Anchor> read_anchors(const JsonPlace& place, const Network& network)
                   "the mean of the nodes by the weights, where it is at rest");
   }
   return anchors;
+}
+
+std::vector<SpringsRegion> read_regions(const JsonPlace& list) {
+  std::vector<SpringsRegion> regions;
+  for (const JsonPlace& item : list.items()) {
+    item.require_known({"name", "youngs_modulus_Pa", "poisson_ratio", "density_kg_m3"});
+    const auto positive = [&](const char* key) {
+      return item.at(key).number(smallest_of_file, largest_number_of_file);
+    };
+    regions.push_back(
+        {item.at("name").text(),
+         {positive("youngs_modulus_Pa"), item.at("poisson_ratio").number(-1, 0.5), positive("density_kg_m3")}});
+  }
+  if (regions.empty() || regions.size() > most_regions)
+    list.refuse(fmt::format("has {} regions", regions.size()), fmt::format("1 to {}", most_regions));
+  return regions;
+}
+
+/// The volumes of the nodes, which have had the body's own density till now.
+/// @throws InputError unless their masses are those of the cells.
+void share_volumes(const JsonPlace& masses, Network& network) {
+  const Eigen::VectorXd by_mass = volumes_by_mass(network), off = (by_mass - network.volume).cwiseAbs();
+  Eigen::Index worst = 0;
+  if (off.maxCoeff(&worst) > at_rest * by_mass.maxCoeff())
+    masses.refuse(fmt::format("node {} has not an eighth of the masses of its cells", worst),
+                  "fraction times volume times density of the cells' regions, in eighths");
+  network.volume.setZero();
+  for (std::size_t c = 0; c < network.cells.size(); ++c)
+    for (const int n : network.cells.corners[c]) network.volume[n] += network.cells.shape(c).volume() / 8;
+  hand_back(network.cells.carried, network.volume, 1);
+}
+
+InterfaceBond bond_of(const int* nodes, const double* weights, const double* stiffness) {
+  InterfaceBond bond;
+  for (int side = 0; side < 2; ++side) {
+    std::copy_n(nodes + 8 * side, 8, bond.corners[side].begin());
+    std::copy_n(weights + 8 * side, 8, bond.weights[side].begin());
+  }
+  bond.stiffness = Eigen::Map<const Eigen::Matrix3d>(stiffness);
+  return bond;
+}
+
+void require_bond(const InterfaceBond& bond, std::size_t number, const JsonPlace& place, const Network& network) {
+  const auto refuse = [&](const char* key, const char* what, const char* allowed) {
+    place.at(key).refuse(fmt::format("bond {} {}", number, what), allowed);
+  };
+  for (const auto& side : bond.weights)
+    if (std::abs(std::accumulate(side.begin(), side.end(), -1.0)) > at_rest)
+      refuse("weights", "has weights that do not sum to 1", "eight of each cell that sum to 1");
+  if (gap(bond, network.X).cwiseAbs().maxCoeff() > at_rest * network.cells.edge)
+    refuse("weights", "is stretched at rest", "means of both cells at the same point");
+  const Eigen::Matrix3d& K = bond.stiffness;
+  if ((K - K.transpose()).cwiseAbs().maxCoeff() > at_rest * K.cwiseAbs().maxCoeff() ||
+      !(K.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff() >= 0))
+    refuse("stiffness_N_m", "pushes apart", "a symmetric matrix without negative eigenvalues, row by row");
 }
 
 PatchShares read_load(const JsonPlace& place, int nodes_of_network) {
@@ -119,6 +177,38 @@ void read_carried(const JsonPlace& document, Network& network) {
   }
   if ((network.volume.array() == 0).count() != static_cast<Eigen::Index>(nodes.size()))
     document.at("nodes").at("mass_kg").refuse("has nodes of 0 kg that nothing carries", "a mass, or a row in /carried");
+}
+
+void read_materials(const JsonPlace& document, double version, SpringsFile& file) {
+  Network& network = file.model.network;
+  const auto cells = document.find("cells"), regions = document.find("regions"), bonds = document.find("bonds");
+  const auto material = cells ? cells->find("material") : std::nullopt;
+  for (const auto& place : {material, regions, bonds}) {
+    if (!place) continue;
+    if (version < springs_version_of_materials) place->refuse("is of several materials", "version 5");
+    if (!material || !regions)
+      place->refuse("is without the others of several materials", "regions beside cells.material");
+  }
+  if (!material) return;
+  if (!network.cells.cut()) material->refuse("is of whole cells", "cut cells, with fraction, mean, mixed and variance");
+  file.regions = read_regions(*regions);
+  const std::vector<int> numbers =
+      material->integers(1, static_cast<int>(file.regions.size()), network.cells.size(), "cells");
+  network.cells.materials.assign(numbers.begin(), numbers.end());
+  network.cells.relative_densities = {1};
+  for (const SpringsRegion& r : file.regions)
+    network.cells.relative_densities.push_back(r.material.density / file.density);
+  share_volumes(document.at("nodes").at("mass_kg"), network);
+  if (!bonds) return;
+  bonds->require_known({"nodes", "weights", "stiffness_N_m"});
+  const std::vector<int> nodes = bonds->at("nodes").integers(16, network.nodes() - 1);
+  const std::size_t count = nodes.size() / 16;
+  const std::vector<double> weights = bonds->at("weights").numbers(16, count, "bonds"),
+                            stiffness = bonds->at("stiffness_N_m").numbers(9, count, "bonds");
+  for (std::size_t b = 0; b < count; ++b) {
+    network.bonds.push_back(bond_of(&nodes[16 * b], &weights[16 * b], &stiffness[9 * b]));
+    require_bond(network.bonds.back(), b, *bonds, network);
+  }
 }
 
 void read_supports_and_loads(const JsonPlace& document, SpringsFile& file) {

@@ -23,6 +23,11 @@ void read_proportions(const JsonPlace& cells, double version, Network& network);
 /// @throws InputError unless they can be those of a part of a cube.
 void read_filled(const JsonPlace& cells, Network& network);
 
+/// `regions` of the document, `material` of its cells and `bonds` between them, from version 5 on.
+/// @param document with its cells in the network of `file`
+/// @throws InputError unless the cells are cut, have the masses of the nodes, and bonds are at rest and hold.
+void read_materials(const JsonPlace& document, double version, SpringsFile& file);
+
 /// `anchors` and `loads` of the document and `weight_kg` of its nodes.
 /// @throws InputError also if an anchor is not at rest.
 void read_supports_and_loads(const JsonPlace& document, SpringsFile& file);

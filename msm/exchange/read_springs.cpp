@@ -58,6 +58,18 @@ class LawReader {
     known_.emplace_back(key);
     values = law_.at(key).numbers(each, network_.cells.size(), "cells");
   }
+  /// The laws of the other materials.
+  void of_regions(std::vector<AveragedSprings>& laws) {
+    known_.emplace_back("regions");
+    const auto list = law_.find("regions");
+    for (const JsonPlace& item : list ? list->items() : std::vector<JsonPlace>()) {
+      LawReader reader(item, network_);
+      AveragedSprings law;
+      law.fields(reader);
+      reader.refuse_others();
+      laws.push_back(std::move(law));
+    }
+  }
   void refuse_others() const { law_.require_known(known_); }
 
  private:
@@ -175,7 +187,7 @@ std::vector<Spring> read_springs_of(const JsonPlace& document, const NodalVector
 }
 
 double version_of(const JsonPlace& document) {
-  return document.at("version").number(springs_version, springs_version_of_boxes);
+  return document.at("version").number(springs_version, springs_version_of_materials);
 }
 
 void read_cells(const JsonPlace& document, Network& network) {
@@ -187,7 +199,7 @@ void read_cells(const JsonPlace& document, Network& network) {
   const auto place = document.find("cells");
   if (!place) return;
   CellSet& cells = network.cells;
-  place->require_known({"nodes", "edge_m", "proportions", "fraction", "mean", "mixed", "variance"});
+  place->require_known({"nodes", "edge_m", "proportions", "fraction", "mean", "mixed", "variance", "material"});
   cells.corners = rows<8>(place->at("nodes"), last);
   require_each_once(cells.corners, "cell", place->at("nodes"));
   read_edges(*place, version_of(document), network);
@@ -227,7 +239,19 @@ void require_positive(const MeasuredCells& law, const Network& network, const Js
   }
 }
 
+/// One law for the cells of each material.
+void require_of_materials(const ForceLaw& law, const Network& network, const JsonPlace& place) {
+  const auto* averaged = std::get_if<AveragedSprings>(&law);
+  const std::size_t materials = std::max<std::size_t>(1, network.cells.relative_densities.size());
+  if (materials > 1 && !averaged && traits(law).reach != Reach::springs)
+    place.refuse("acts on cells of one material", "averaged_springs alone");
+  if (averaged && averaged->regions.size() + 1 != materials)
+    place.refuse(fmt::format("has constants of {} materials, of {}", averaged->regions.size() + 1, materials),
+                 "in regions a law for each of /regions");
+}
+
 void require_its_parts(const ForceLaw& law, const Network& network, const JsonPlace& place) {
+  require_of_materials(law, network, place);
   if (traits(law).reach == Reach::cells && network.cells.empty())
     place.refuse("has no cells to act on", "beside cells");
   const bool of_cells = traits(law).reach == Reach::cells;
@@ -260,6 +284,7 @@ void read_laws(const JsonPlace& document, const SpringOrder& order, MassSpringMo
     if (!place) return;
     LawReader reader(*place, network);
     law.fields(reader);
+    if constexpr (std::is_same_v<decltype(law), AveragedSprings>) reader.of_regions(law.regions);
     reader.refuse_others();
     if constexpr (std::is_same_v<decltype(law), MomentumDispersion>) order.sort(law.weight);
     require_its_parts(law, network, *place);
@@ -280,7 +305,7 @@ void require_rest(const JsonPlace& document, const MassSpringModel& model) {
   if (const AveragedSprings* averaged = averaged_springs_of(model))
     for (std::size_t c = 0; c < network.cells.size(); ++c)
       for (const int n : network.cells.corners[c])
-        scale[n] += averaged->shear_modulus * std::pow(network.cells.edge_of(c), 2);
+        scale[n] += averaged->in(network.cells.material(c)).shear_modulus * std::pow(network.cells.edge_of(c), 2);
   if (const auto* measured = law_of<MeasuredCells>(model))
     for (std::size_t c = 0; c < network.cells.size(); ++c)
       for (const int n : network.cells.corners[c])
@@ -338,10 +363,10 @@ void require_format(const JsonPlace& document) {
   if (const auto format = document.find("format"); !format || format->text() != springs_format)
     document.refuse("is no springs file", fmt::format("\"format\": \"{}\"", springs_format));
   if (const double version = version_of(document); version != std::floor(version))
-    document.at("version").refuse("is no whole number", "1, 2 or 3");
-  document.require_known({"format", "version", "origin", "material", "density_kg_m3", "grip_m", "grip_from", "derived",
-                          "laws", "nodes", "springs", "cells", "carried", "triangles", "patches", "anchors", "loads",
-                          "surface", "check"});
+    document.at("version").refuse("is no whole number", "1 to 5");
+  document.require_known({"format",    "version",   "origin",  "material", "density_kg_m3", "regions", "grip_m",
+                          "grip_from", "derived",   "laws",    "nodes",    "springs",       "cells",   "bonds",
+                          "carried",   "triangles", "patches", "anchors",  "loads",         "surface", "check"});
 }
 
 SpringsFile read_document(const JsonPlace& document) {
@@ -363,7 +388,9 @@ SpringsFile read_document(const JsonPlace& document) {
   network.springs = order(unsorted);
   read_cells(document, network);
   read_carried(document, network);
+  read_materials(document, version_of(document), file);
   read_laws(document, order, file.model);
+  if (!network.bonds.empty() && !law_of<Anchors>(file.model)) file.model.laws.emplace_back(Anchors{});
   require_rest(document, file.model);
   read_patches(document, file);
   read_supports_and_loads(document, file);

@@ -122,6 +122,17 @@ Json origin_json(const SpringsOrigin& origin) {
           {"checksum_xxh3_128", origin.checksum}};
 }
 
+Json moduli_json(const IsotropicMaterial& m) {
+  return {{"youngs_modulus_Pa", m.youngs_modulus}, {"poisson_ratio", m.poisson_ratio}};
+}
+
+Json region_json(const SpringsRegion& region) {
+  Json json = {{"name", region.name}};
+  json.update(moduli_json(region.material));
+  json["density_kg_m3"] = region.material.density;
+  return json;
+}
+
 /// Moments of the filled parts (meshes/voxels/filled_part.h).
 void add_filled(const std::vector<FilledPart>& filled, DocumentWriter& out) {
   std::vector<double> fraction;
@@ -148,6 +159,7 @@ void add_cells(const CellSet& cells, DocumentWriter& out) {
     out.at({"cells", "proportions"}) = {cells.proportions[0], cells.proportions[1], cells.proportions[2]};
   out.rows({"cells", "nodes"}, cells.corners);
   if (cells.cut()) add_filled(cells.filled, out);
+  if (!cells.materials.empty()) out.indices({"cells", "material"}, {cells.materials.begin(), cells.materials.end()});
   if (cells.carried.empty()) return;
   std::vector<int> nodes;
   std::vector<std::array<int, 4>> by;
@@ -157,6 +169,23 @@ void add_cells(const CellSet& cells, DocumentWriter& out) {
   }
   out.indices({"carried", "nodes"}, nodes);
   out.rows({"carried", "by"}, by);
+}
+
+void add_bonds(const std::vector<InterfaceBond>& bonds, DocumentWriter& out) {
+  std::vector<std::array<int, 16>> nodes;
+  std::vector<double> weights, stiffness;
+  for (const InterfaceBond& b : bonds) {
+    std::array<int, 16>& both = nodes.emplace_back();
+    for (int side = 0; side < 2; ++side) {
+      std::copy(b.corners[side].begin(), b.corners[side].end(), both.begin() + 8 * side);
+      weights.insert(weights.end(), b.weights[side].begin(), b.weights[side].end());
+    }
+    stiffness.insert(stiffness.end(), b.stiffness.data(), b.stiffness.data() + 9);
+  }
+  out.rows({"bonds", "nodes"}, nodes);
+  out.array<double>({"bonds", "weights"}, {bonds.size(), 16}, std::move(weights));
+  require_readable({"bonds", "stiffness_N_m"}, stiffness);
+  out.array<double>({"bonds", "stiffness_N_m"}, {bonds.size(), 9}, std::move(stiffness));
 }
 
 void add_network(const Network& network, double density, DocumentWriter& out) {
@@ -178,17 +207,32 @@ void add_network(const Network& network, double density, DocumentWriter& out) {
   out.numbers({"springs", "stiffness_N_m"}, std::move(stiffness), smallest_of_file);
   out.numbers({"springs", "rest_length_m"}, std::move(rest_length), smallest_of_file);
   if (!network.cells.empty()) add_cells(network.cells, out);
+  if (!network.bonds.empty()) add_bonds(network.bonds, out);
   if (!network.triangles.empty()) out.rows({"triangles"}, network.triangles);
+}
+
+/// The constants of the other materials.
+void add_regions(const AveragedSprings& law, Keys keys, const Network& network, DocumentWriter& out) {
+  keys.emplace_back("regions");
+  Json list = Json::array();
+  for (AveragedSprings region : law.regions) {
+    LawWriter writer(out, keys, network);
+    region.fields(writer);
+    list.push_back(out.at(keys));
+  }
+  if (!list.empty()) out.at(keys) = std::move(list);
 }
 
 void add_laws(const MassSpringModel& model, DocumentWriter& out) {
   out.at({"laws"}) = Json::object();
   for (const ForceLaw& law : model.laws) {
+    if (std::holds_alternative<Anchors>(law) && !model.network.bonds.empty()) continue;  // bonds act by being there
     const Keys keys = {"laws", key_of_law(traits(law))};
     if (out.at({"laws"}).contains(keys.back()))
       throw std::invalid_argument(fmt::format("a springs file has one {} only", traits(law).name));
     LawWriter writer(out, keys, model.network);
     std::visit([&](auto l) { l.fields(writer); }, law);
+    if (const auto* averaged = std::get_if<AveragedSprings>(&law)) add_regions(*averaged, keys, model.network, out);
   }
 }
 
@@ -242,8 +286,9 @@ void add_surface(const EmbeddedSurface& surface, DocumentWriter& out) {
   out.numbers({"surface", "weights"}, std::move(weights));
 }
 
-int version_of(CellKind cells) {
-  switch (cells) {
+int version_of(const CellSet& cells) {
+  if (!cells.materials.empty()) return springs_version_of_materials;
+  switch (cells.kind()) {
     case CellKind::none:
     case CellKind::cubes:
       return springs_version;
@@ -281,14 +326,11 @@ NodalVectors check_positions(const NodalVectors& X) {
 SpringsDocument document_of(const SpringsFile& springs) {
   DocumentWriter out;
   const Network& network = springs.model.network;
-  if (!network.cells.materials.empty() || !network.bonds.empty())
-    throw std::invalid_argument("a springs file holds cells of one material; the body has several");
-  out.document.head = {{"format", springs_format}, {"version", version_of(network.cells.kind())}};
+  out.document.head = {{"format", springs_format}, {"version", version_of(network.cells)}};
   out.at({"origin"}) = origin_json(springs.origin);
-  if (springs.material)
-    out.at({"material"}) = {{"youngs_modulus_Pa", springs.material->youngs_modulus},
-                            {"poisson_ratio", springs.material->poisson_ratio}};
+  if (springs.material) out.at({"material"}) = moduli_json(*springs.material);
   out.at({"density_kg_m3"}) = springs.density;
+  for (const SpringsRegion& region : springs.regions) out.at({"regions"}).push_back(region_json(region));
   out.at({"grip_m"}) = springs.grip;
   out.at({"grip_from"}) = springs.grip_from_cells ? "cells" : "surface";
   out.at({"derived"}) = springs.derived;

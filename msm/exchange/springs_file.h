@@ -24,6 +24,12 @@ struct EmbeddedSurface {
   Eigen::SparseMatrix<double, Eigen::RowMajor> weights;  ///< vertices x nodes; rows sum to 1
 };
 
+/// A region of the body, of another material.
+struct SpringsRegion {
+  std::string name;
+  IsotropicMaterial material;
+};
+
 /// Where a springs file comes from.  Not read back.
 struct SpringsOrigin {
   std::string program;                                                     ///< that wrote it, with its version
@@ -38,6 +44,7 @@ struct SpringsFile {
   MassSpringModel model;                      ///< network and laws
   double density = 1000;                      ///< [kg/m^3]; a node's mass is this times its volume share
   std::optional<IsotropicMaterial> material;  ///< what the springs stand for; empty: not known
+  std::vector<SpringsRegion> regions;         ///< of the cells of material 1, 2, ...
   double grip = 0;  ///< depth [m] to which a support holds nodes, for nodes that are no mesh's
   bool grip_from_cells =
       false;  ///< measured from the surface of the cells that the body is cut into, not from the true one

@@ -83,12 +83,13 @@ std::string springs_as_vtu(const SpringsFile& springs) {
   vtu.point_data = {{"mass_kg", 1, {mass.begin(), mass.end()}}};
   vtu.cell_data = {std::move(stiffness), std::move(rest_length)};
   if (!network.springs.empty()) return text_of(vtu);
-  VtuArray fraction{"fraction", 1, {}};
+  VtuArray fraction{"fraction", 1, {}}, material{"material", 1, {}};
   for (std::size_t c = 0; c < network.cells.size(); ++c) {
     vtu.add_cell(network.cells.corners[c], hexahedron);
     fraction.values.push_back(network.cells.part(c).fraction);
+    material.values.push_back(network.cells.material(c));
   }
-  vtu.cell_data = {std::move(fraction)};
+  vtu.cell_data = {std::move(fraction), std::move(material)};
   return text_of(vtu);
 }
 

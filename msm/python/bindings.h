@@ -19,6 +19,7 @@
 #include "msm/exchange/springs_file.h"
 #include "msm/models.h"
 #include "msm/statics/equilibrium.h"
+#include "problem/region.h"
 #include "problem/system/progress.h"
 
 namespace springproof::python {
@@ -32,6 +33,7 @@ struct SolidBody {
   std::shared_ptr<const CutBody> cut;      ///< null: the mesh is the body
   std::shared_ptr<const Mesh> tetrahedra;  ///< the true body; null: the mesh is the body
   std::vector<std::string> notes;
+  std::vector<MaterialRegion> regions = {};
 };
 
 /// A model in a body, or the springs of a file, which have none.

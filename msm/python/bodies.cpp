@@ -7,6 +7,7 @@
 #include "meshes/field.h"
 #include "meshes/mesher/mesher.h"
 #include "meshes/patches/select_patches.h"
+#include "meshes/regions/mark_regions.h"
 #include "meshes/voxels/voxelise.h"
 #include "msm/python/bindings.h"
 #include "problem/body.h"
@@ -54,6 +55,27 @@ PatchRule rule_of(const std::string& name, const std::optional<std::pair<Numbers
   return rule;
 }
 
+MaterialRegion region_of_place(const std::string& name, const IsotropicMaterial& material,
+                               const std::optional<std::string>& volume,
+                               const std::optional<std::pair<Numbers, Numbers>>& box,
+                               const std::optional<std::pair<Numbers, double>>& near,
+                               const std::optional<std::pair<Numbers, Numbers>>& beyond,
+                               const std::optional<fs::path>& stl, double scale) {
+  if (volume.has_value() + box.has_value() + near.has_value() + beyond.has_value() + stl.has_value() != 1)
+    throw InputError(
+        fmt::format("region: '{}' needs one place (allowed: one of volume, box, near, beyond, stl)", name));
+  MaterialRegion region{name, material, {}, {}};
+  if (volume)
+    region.place = *volume;
+  else if (stl)
+    region.place = EnclosedPlace{*stl, scale};
+  else {
+    const PatchRule rule = rule_of(name, box, beyond, {}, near);
+    box ? region.place = *rule.box : near ? region.place = *rule.near : region.place = *rule.beyond;
+  }
+  return region;
+}
+
 std::shared_ptr<SolidBody> block_of(const Vec3& size, const Cells& cells) {
   for (int d = 0; d < 3; ++d)
     if (!(size[d] > 0) || !std::isfinite(size[d]))
@@ -80,10 +102,12 @@ fs::path find_body(const fs::path& file, const Vec3& size, double scale) {
 }
 
 SolidBody cut_out(const MeshRequest& request, std::optional<double> edge, int cubes,
-                  const std::vector<PatchRule>& patches) try {
+                  const std::vector<PatchRule>& patches, const std::vector<MaterialRegion>& regions) try {
   MeshedBody meshed = mesh_to_cut(request);
   SolidBody body;
   body.notes = std::move(meshed.notes);
+  body.regions = regions;
+  for (std::string& note : mark_regions(regions, 1, meshed.mesh)) body.notes.push_back(std::move(note));
   for (std::string& note : select_patches(patches, meshed.mesh)) body.notes.push_back(std::move(note));
   body.tetrahedra = std::make_shared<Mesh>(std::move(meshed.mesh));
   body.region = std::make_shared<Region>(region_of(*body.tetrahedra));
@@ -98,8 +122,10 @@ SolidBody cut_out(const MeshRequest& request, std::optional<double> edge, int cu
 }
 
 std::shared_ptr<SolidBody> voxels_of(const fs::path& file, int cubes, std::optional<double> edge, double scale,
-                                     const std::optional<Numbers>& size, const std::vector<PatchRule>& patches) {
+                                     const std::optional<Numbers>& size, const std::vector<PatchRule>& patches,
+                                     const std::vector<MaterialRegion>& regions) {
   MeshRequest request;
+  request.volumes = volumes_of(regions);
   request.size = size ? vector_of(*size, "size") : Vec3::Zero();
   request.file = find_body(file, request.size, scale);
   request.scale = scale;
@@ -109,7 +135,7 @@ std::shared_ptr<SolidBody> voxels_of(const fs::path& file, int cubes, std::optio
   if (edge && (!(*edge > 0) || !std::isfinite(*edge)))
     throw InputError(fmt::format("edge: is {} (allowed: a length > 0 [m])", *edge));
   if (cubes < 1 || cubes > 4000000) throw InputError(fmt::format("cubes: is {} (allowed: 1 to 4000000)", cubes));
-  return long_call([&] { return std::make_shared<SolidBody>(cut_out(request, edge, cubes, patches)); });
+  return long_call([&] { return std::make_shared<SolidBody>(cut_out(request, edge, cubes, patches, regions)); });
 }
 
 py::dict patches_of(const SolidBody& body) {
@@ -160,6 +186,15 @@ facing: a direction and the largest angle to it [degrees]; near: a point [m] and
       .def(py::init(&rule_of), "name"_a, py::kw_only(), "box"_a = py::none(), "beyond"_a = py::none(),
            "facing"_a = py::none(), "near"_a = py::none())
       .def_readonly("name", &PatchRule::name);
+  py::class_<MaterialRegion>(m, "Region",
+                             R"(A part of a body of another material, in one place; where two overlap, the later.
+
+volume: of the body's file, by name or number; box, near, beyond: as of a Patch; stl: a file of a closed surface, whose
+coordinates `scale` multiplies.)")
+      .def(py::init(&region_of_place), "name"_a, "material"_a, py::kw_only(), "volume"_a = py::none(),
+           "box"_a = py::none(), "near"_a = py::none(), "beyond"_a = py::none(), "stl"_a = py::none(), "scale"_a = 1.0)
+      .def_readonly("name", &MaterialRegion::name)
+      .def_readonly("material", &MaterialRegion::material);
   py::class_<SolidBody, std::shared_ptr<SolidBody>>(
       m, "Body", R"(A body in cubes, made by block() or voxels(), or in tetrahedra, as compare() hands it out.)")
       .def_property_readonly(
@@ -190,7 +225,7 @@ facing: a direction and the largest angle to it [degrees]; near: a point [m] and
       R"(A block from the origin to `size` [m], in (nx, ny, nz) cubes; patches x_min x_max y_min y_max z_min z_max.)");
   m.def(
       "voxels", &voxels_of, "file"_a, "cubes"_a = 2000, py::kw_only(), "edge"_a = py::none(), "scale"_a = 1.0,
-      "size"_a = py::none(), "patches"_a = std::vector<PatchRule>(),
+      "size"_a = py::none(), "patches"_a = std::vector<PatchRule>(), "regions"_a = std::vector<MaterialRegion>(),
       R"(A closed body (.stl, .obj, .ply, .msh, .step, .stp, .brep, .geo, or a built-in one as "rabbit.stl") in about `cubes` cubes,
 or in cubes of `edge` [m]; `scale` multiplies its coordinates, `size` [m] is that of a script for gmsh.
 

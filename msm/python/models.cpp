@@ -64,10 +64,12 @@ std::shared_ptr<BodyModel> build(const std::string& name, const std::shared_ptr<
     throw InputError(fmt::format("{}: cut = True: the body is a block (allowed: a body by voxels())", name));
   if (!cut && !held.empty())
     throw InputError(fmt::format("{}: held: is for cut cells (allowed: with cut = True)", name));
+  if (!body->regions.empty() && (!cut || made.parameters.coarsened.value_or(false)))
+    throw InputError(fmt::format("{}: is of one material here (allowed for a body of regions: cut = True)", name));
   for (const std::string& on : held) patch(*body->tetrahedra, on);
   EmbeddedModel built = long_call([&] {
     if (made.parameters.coarsened.value_or(false)) return build_measured(made.parameters, *body, held, material);
-    return cut ? build_cut(made.parameters, *body->cut, held, *body->mesh, material)
+    return cut ? build_cut(made.parameters, *body->cut, held, *body->mesh, material, materials_of(body->regions))
                : build_embedded(made.parameters, *body->mesh, material, body->region.get());
   });
   attach(masses, *body->mesh, built.embedding, built.model.network);
@@ -76,6 +78,7 @@ std::shared_ptr<BodyModel> build(const std::string& name, const std::shared_ptr<
   springs.model = std::move(built.model);
   springs.density = material.density;
   springs.material = material;
+  for (const MaterialRegion& r : body->regions) springs.regions.push_back({r.name, r.material});
   springs.grip = grip_of(made.parameters, *body->mesh);
   springs.grip_from_cells = made.parameters.row.topology != Topology::random;
   springs.patches = made.embedding.held;
@@ -202,6 +205,15 @@ the model.)");
                              "s records (i, j, stiffness [N/m], rest_length [m]) of springs, i < j; a view")
       .def_property_readonly("cells", &cells_view,
                              "corners of each cell, c x 8, none for networks without cells; a view")
+      .def_property_readonly(
+          "cell_materials",
+          [](const BodyModel& b) {
+            std::vector<int> materials;
+            for (std::size_t c = 0; c < b.network().cells.size(); ++c)
+              materials.push_back(b.network().cells.material(c));
+            return indices(materials);
+          },
+          "of each cell, c: 0 in no region, 1, 2, ... in the regions of the body")
       .def_property_readonly(
           "patches",
           [](const BodyModel& b) {

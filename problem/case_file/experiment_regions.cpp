@@ -14,9 +14,18 @@ Range range_of(const ModulusName& modulus) {
   return modulus.member == &Moduli::lame_lambda ? any_number : positive_number;
 }
 
+/// In the lengths of the body's file, if it has no unit of its own.
+EnclosedPlace read_enclosed(const TomlTable& table, const TomlValue& stl, const Experiment& e) {
+  const double unit = unit_in(table.value().units, "m").in_si;
+  const auto scale = table.find("scale");
+  const bool as_body = !scale && !e.body.is_script() && !e.body.states_its_unit();
+  return {e.file.parent_path() / as_text(stl),
+          as_body ? e.body.scale : unit * (scale ? as_number(*scale, positive_number) : 1)};
+}
+
 /// The one thing that says where a region lies.
-RegionPlace read_place(const TomlTable& table) {
-  constexpr const char* one = "one of volume, box_m, near, beyond";
+RegionPlace read_place(const TomlTable& table, const Experiment& e) {
+  constexpr const char* one = "one of volume, box_m, near, beyond, stl";
   std::vector<RegionPlace> places;
   if (const auto volume = table.find("volume")) {
     const toml::value<std::int64_t>* number = volume->node->as_integer();
@@ -25,17 +34,21 @@ RegionPlace read_place(const TomlTable& table) {
   if (const auto box = table.find("box_m")) places.emplace_back(read_box(*box));
   if (const auto near = table.find("near")) places.emplace_back(read_near(*near));
   if (const auto beyond = table.find("beyond")) places.emplace_back(read_beyond(*beyond));
+  const auto stl = table.find("stl");
+  if (stl) places.emplace_back(read_enclosed(table, *stl, e));
+  if (const auto scale = table.find("scale"); scale && !stl) refuse(*scale, "is of a file", "beside stl");
   if (places.empty()) refuse(table.value(), "does not say where it lies", one);
   if (places.size() > 1) refuse(table.value(), "says twice where it lies", one);
   return places.front();
 }
 
-MaterialRegion read_region(const TomlValue& value, double density) {
+MaterialRegion read_region(const TomlValue& value, const Experiment& e) {
   const TomlTable table(value, keys_of("region"));
   for (const ModulusName& modulus : modulus_names)
     if (const auto given = table.find(modulus.key); given && given->node->is_array())
       refuse(*given, "is a list", "one number; lists are for [material]");
-  return {as_text(table.at("name")), read_moduli(table, density).front(), location_of(value), read_place(table)};
+  return {as_text(table.at("name")), read_moduli(table, e.materials.front().density).front(), location_of(value),
+          read_place(table, e)};
 }
 
 /// What of a case is computed of one material alone, and what it may be instead; empty: nothing.
@@ -99,7 +112,7 @@ std::vector<MaterialRegion> read_regions(const TomlTable& document, const Experi
   constexpr std::size_t most = 255;  // numbers of Mesh::materials
   std::vector<MaterialRegion> regions;
   for (const TomlValue& value : document.tables("region")) {
-    regions.push_back(read_region(value, experiment.materials.front().density));
+    regions.push_back(read_region(value, experiment));
     for (std::size_t i = 0; i + 1 < regions.size(); ++i)
       if (regions[i].name == regions.back().name)
         refuse(TomlTable(value, keys_of("region")).at("name"),

@@ -107,6 +107,8 @@ constexpr Key region_keys[] = {
   {"box_m",             "a box",                                     "two corners, [[x, y, z], [x, y, z]]",  "a place",     "[[0, 0, 0], [0.1, 0.1, 0.02]]"},
   {"near",              "a ball",                                    "a table",                              "a place",     "{ point_m = [0.05, 0.05, 0], radius_m = 0.03 }"},
   {"beyond",            "one side of a plane",                       "a table",                              "a place",     "{ point_m = [0, 0, 0.01], normal = [0, 0, -1] }"},
+  {"stl",               "a closed surface: .stl, .obj, .ply",        "a string",                             "a place",     "\"tumour.stl\""},
+  {"scale",             "multiplies its coordinates",                above_0,                                "the body's",  "0.001"},
   {"youngs_modulus_Pa", "as of [material]",                          above_0,                                "two moduli",      "1e6"},
   {"poisson_ratio",     "",                                          "-1 < poisson_ratio < 0.5",             "two moduli",      "0.45"},
   {"shear_modulus_Pa",  "",                                          above_0,                                "two moduli",      "4e5"},

@@ -277,6 +277,83 @@ assert abs(anchor(s, "low", x).sum(axis=0) + small.sum(axis=0)).max() < 1e-3 * a
 END
 fi
 
+# Several materials: the file's statics by hang_springs.py are compare's.
+cat >regions.toml <<'END'
+[body]
+geo = "icosahedron.stl"
+scale = 0.01
+voxels = 200
+[[patch]]
+name = "low"
+beyond = { point_m = [0, 0, -0.005], normal = [0, 0, -1] }
+[[patch]]
+name = "high"
+beyond = { point_m = [0, 0, 0.005], normal = [0, 0, 1] }
+[material]
+youngs_modulus_Pa = 1e4
+poisson_ratio = 0.4
+density_kg_m3 = 1100
+[[region]]
+name = "core"
+near = { point_m = [0.001, 0, 0.001], radius_m = 0.004 }
+youngs_modulus_Pa = 1e6
+poisson_ratio = 0.48
+density_kg_m3 = 1900
+[[region]]
+name = "side"
+beyond = { point_m = [0.0045, 0, 0], normal = [1, 0, 0] }
+youngs_modulus_Pa = 1e3
+poisson_ratio = 0.3
+[[load]]
+on = "low"
+displacement_m = [0, 0, 0]
+[[load]]
+on = "high"
+force_N = [1e-6, 0, -1e-5]
+[[probe]]
+name = "a"
+at_m = [0.001, 0.0001, 0.001]
+[compare]
+models = ["hybmss_avg"]
+measures = ["probe", "reaction"]
+[reference]
+elements = []
+END
+for form in json npz; do export_to regions.toml --to springs --out "regions.$form"; done
+grep -q '"version": 5' regions.json && grep -q '"bonds": ' regions.json && grep -q '"name":"core"' regions.json || fail "no file of several materials"
+sed 's/"hybmss_avg"/"hybmss_avg", { file = "regions.json", label = "mine" }/' regions.toml >both.toml
+"$program" compare both.toml --out refused --quiet >log 2>&1 && fail "a file of several materials is a model"
+grep -q 'compare.models: mine is of one material in a body' log || fail "a file of several materials as a model: $(cat log)"
+"$program" export regions.toml --to jolt --out refused.json >log 2>&1 && fail "an engine takes several materials"
+grep -q "region: 'core': export --to jolt of whole cubes is for bodies of one material" log || fail "an engine: $(cat log)"
+if [ -n "$numpy" ]; then
+  for form in json npz; do
+    off=$("$numpy" springs.py "regions.$form" | awk '{ print $3 }')
+    awk -v off="$off" 'BEGIN { exit !(off != "" && off < 1e-12) }' || fail "forces of regions.$form by examples/springs.py: off by '$off'"
+  done
+  if "$numpy" -c "import scipy" 2>/dev/null; then
+    cp "$source/examples/hang_springs.py" .
+    "$program" compare regions.toml --out regions --quiet >log 2>&1
+    "$numpy" - <<'END' || fail "several materials: the equilibrium by hang_springs.py is another than compare's"
+import csv, sys
+import numpy as np
+from springs import load, embed
+from hang_springs import rest
+s = load("regions.json")
+share, f = np.zeros(len(s["nodes"]["mass_kg"])), 1e-5 * np.array([0.1, 0, -1])
+share[s["loads"]["high"]["nodes"]] = s["loads"]["high"]["area_m2"] / s["loads"]["high"]["area_m2"].sum()
+x = [rest(s, "low", sign * np.outer(share, f), say=lambda line: None) for sign in (1, -1)]  # their difference is linear in the load
+rows = {row["measure"]: float(row["value"]) for row in csv.DictReader(open("regions/results.csv"))}
+theirs = np.array([rows[f"displacement.a.{axis}"] for axis in "xyz"])
+nodes, weights = embed(s, np.array([[0.001, 0.0001, 0.001]]))
+ours = np.einsum("pn,pni->pi", weights, (x[0] - x[1])[nodes] / 2)[0]
+assert abs(ours - theirs).max() < 1e-6 * abs(theirs).max(), (ours, theirs)
+mass = s["nodes"]["mass_kg"].sum()
+assert abs(s["nodes"]["weight_kg"].sum() - mass) < 1e-9 * mass, mass
+END
+  fi
+fi
+
 # Without a material it runs in any.
 sed 's/MODEL/hybmss/g; s/poisson_ratio = 0.4/poisson_ratio = [0.3, 0.4]/' template.toml >own.toml
 export_to own.toml --model hybmss --nu 0.4 --to springs --out whole.json
@@ -325,7 +402,7 @@ spoilt() {
   [ $status -eq 2 ] && [ "$(wc -l <log)" -eq 1 ] && grep -qE -- "$1" log && [ ! -e refused ] || fail "$2: status $status: $(head -c 600 log)"
 }
 spoilt 'own.toml:16:.*hybmss.json:[0-9]+:[0-9]+: not valid JSON' 's/"density_kg_m3": 1100.0/"density_kg_m3": NaN/'
-spoilt 'own.toml:16:.*hybmss.json: /version: is 5 \(allowed' 's/"version":  1/"version": 5/'
+spoilt 'own.toml:16:.*hybmss.json: /version: is 6 \(allowed' 's/"version":  1/"version": 6/'
 spoilt 'hybmss.json: /springs/nodes/0/1: is 45 \(allowed: a whole number from 0 to 44' 's/(^  "nodes": \[\[)0,[0-9]+\]/\10,45]/'
 spoilt 'hybmss.json: /springs/nodes/0/1: is 1.5 \(allowed: a whole number' 's/(^  "nodes": \[\[)0,[0-9]+\]/\10,1.5]/'
 spoilt 'hybmss.json: /nodes/mass_kg/0: is 0.0 \(allowed: a finite number >= 1e-30' 's/("mass_kg": \[)[^,]*/\10.0/'

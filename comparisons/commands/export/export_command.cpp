@@ -20,6 +20,7 @@
 #include "meshes/mesher/mesher.h"
 #include "meshes/mesher/mesher_exchange.h"
 #include "meshes/patches/select_patches.h"
+#include "meshes/regions/mark_regions.h"
 #include "msm/exchange/lammps.h"
 #include "msm/laws/capabilities.h"
 #include "msm/models.h"
@@ -53,7 +54,6 @@ Experiment read_case(const std::string& name) {
     throw InputError(
         experiment.relaxation_where,
         "material.relaxation: has no place in exported files, whose springs would not relax (allowed: none)");
-  require_one_material(experiment, "export");
   return experiment;
 }
 
@@ -87,9 +87,13 @@ int export_calculix(const ExportRequest& request) {
     throw InputError("--cells: is for bodies of hexahedra; the tetrahedra of this one have [reference] edge_m");
   const Cells cells = request.cells.empty() && !experiment.body.is_voxels() ? experiment.body.cells.front()
                                                                             : cells_of_option(request.cells);
-  Mesh mesh = experiment.body.is_voxels() ? *prepared.body.tetrahedra.back()
-                                          : mesh_geo(prepared.body.geo, experiment.body.size, cells);
-  if (!experiment.body.is_voxels()) select_whole_facets(experiment.patches, mesh);
+  Mesh mesh = experiment.body.is_voxels()
+                  ? *prepared.body.tetrahedra.back()
+                  : mesh_geo(prepared.body.geo, experiment.body.size, cells, {}, volumes_of(experiment.regions));
+  if (!experiment.body.is_voxels()) {
+    mark_regions(experiment.regions, 1, mesh);
+    select_whole_facets(experiment.patches, mesh);
+  }
   const calculix::Deck deck = calculix::make_deck(experiment, material, mesh);
   std::ostringstream out;
   calculix::write(deck, out);
@@ -179,6 +183,7 @@ Mesh carried_vertices(const ExportRequest& request, const PreparedCase& prepared
 /// `cut`: of cut cells where the model has them and the case does not say otherwise.
 SpringsFile springs_of(const ExportRequest& request, bool cut = false) {
   const Experiment of_case = is_body(request.what) ? Experiment() : read_case(request.what);
+  if (!cut) require_one_material(of_case, fmt::format("export --to {} of whole cubes", request.to));
   Experiment e = is_body(request.what) ? body_alone(request) : one_of_each(of_case, request);
   if (!request.cells.empty()) {
     if (e.body.is_voxels()) throw InputError("--cells: is for bodies of hexahedra; this one has --voxels N");

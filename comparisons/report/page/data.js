@@ -203,7 +203,7 @@ function prepareCase(data) {
     verifies: (experiment.models || []).length === 0,
     runs: data.runs || [], rows: unpack(data.rows), references: data.references || [],
     checks: data.checks || [], published: data.published || [], lines: data.lines || [], histories: data.histories || [],
-    warnings: data.warnings || [], splits: data.splits || [], deformations: data.deformations || [], cracks: data.cracks || [], validation: data.validation || [], validated: data.validated || '', notes: data.notes || [],
+    warnings: data.warnings || [], splits: data.splits || [], deformations: data.deformations || [], cracks: data.cracks || [], regions: data.regions || [], validation: data.validation || [], validated: data.validated || '', notes: data.notes || [],
   };
   const at = item => `${item.model}|${cellsText(item.cells)}|${item.poisson_ratio}`;
   result.runAt = new Map(result.runs.map(run => [at(run), run]));

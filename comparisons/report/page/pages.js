@@ -157,6 +157,7 @@ function problemPart(result) {
     definition('Body', e.body ? bodyText(e.body, e.units) : ''),
     definition('Meshes and cells', bullets(result.notes)),
     definition('Material', (e.materials || []).length > 0 ? materialText(e.materials, (e.loads || []).some(load => load.includes('gravity')), e.units) : ''),
+    definition('Regions', regionsPart(result)),
     definition('Loads', bullets(e.loads || [])),
     definition('Kinematics', e.kinematics ? kinematicsText(result) : ''),
     definition('Models', bullets((e.models || []).map(modelText))),

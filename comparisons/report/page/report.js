@@ -85,6 +85,7 @@ const sections = [
   {id: 'cases', heading: 'Cases', make: needsCases(casesSection)},
   {id: 'measured', heading: 'Beside what was measured', contents: 'Measured', make: measuredSection},
   {id: 'shapes', heading: 'Deformed shapes', make: shapesSection},
+  {id: 'regions', heading: 'Materials of the body', contents: 'Materials', make: regionsSection},
   {id: 'motion', heading: 'Motion in time', contents: 'Motion', make: motionSection},
   {id: 'stability', heading: 'Equilibrium lost', make: stabilitySection},
   {id: 'poisson', heading: 'Error against Poisson’s ratio', contents: 'Error against ν', make: needsErrors(poissonSection)},

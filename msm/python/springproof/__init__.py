@@ -33,6 +33,7 @@ from ._springproof import (
     Patch,
     PointForce,
     Pressure,
+    Region,
     Rotation,
     SolveError,
     State,

@@ -16,6 +16,7 @@
 #include "meshes/volume.h"
 #include "problem/processes/child.h"
 #include "support/says.h"
+#include "support/surfaces.h"
 
 namespace springproof::regions_test {
 namespace {
@@ -147,7 +148,7 @@ TEST(Regions, ThatAreTheBodyOrLieOutsideOfItAreSaid) {
                "[material] is not used");
   mesh = cube();
   EXPECT_WORDS(mark_regions({region(PatchRule::Box{{0.5, 0, 0}, {1.5, 1, 1}})}, 1, mesh).at(0),
-               "50 % of its box or ball lies outside of the body");
+               "50 % of its shape lies outside of the body");
 }
 
 TEST(HalvedTetrahedra, KeepVolumesPatchesAndMaterials) {
@@ -227,6 +228,68 @@ TEST_F(RegionFiles, OfStepAreItsSolidsByNumber) {
   EXPECT_WORDS(message_of({.file = step, .edge = 0.3, .scale = 1000, .volumes = {"3"}}), "has no physical volume '3'");
 }
 
+/// A surface in a file of the folder.
+class RegionSurfaces : public RegionFiles {
+ protected:
+  MaterialRegion enclosed(const std::string& name, const Surface& surface, double scale = 1) const {
+    const fs::path file = folder_.path / name;
+    test::write_stl_binary(file, surface);
+    return region(EnclosedPlace{file, scale});
+  }
+};
+
+TEST_F(RegionSurfaces, NestedInTheBodyConvergeToTheirVolume) {
+  const Surface round = test::moved(test::sphere(0.3, 4), 1, {0.5, 0.45, 0.5});
+  const double exact = volume(round);
+  Mesh coarse = cube(), fine = halved(cube());
+  mark_regions({enclosed("ball.stl", round)}, 1, coarse);
+  const auto notes = mark_regions({enclosed("ball.stl", round)}, 0.5, fine);
+  EXPECT_LT(std::abs(exact - volume_of(fine, 1)), 0.4 * std::abs(exact - volume_of(coarse, 1)));
+  EXPECT_LT(std::abs(exact - volume_of(fine, 1)), 0.03 * exact);
+  EXPECT_EQ(facets_of_one_cell(fine), outer_facets(fine).size());
+  EXPECT_GT(quality_of(fine).worst, 0.01);
+  EXPECT_EQ(notes.at(0).find("outside"), std::string::npos) << notes.at(0);
+}
+
+TEST_F(RegionSurfaces, WithSharpEdgesKeepThem) {
+  const Vec3 size(0.52, 0.48, 0.54);
+  const Surface brick = test::moved(test::box(size, 2), 1, {0.21, 0.33, 0.12});
+  Mesh mesh = halved(cube());
+  mark_regions({enclosed("brick.stl", brick)}, 0.5, mesh);
+  EXPECT_NEAR(volume_of(mesh, 1), size.prod(), 0.01 * size.prod());
+  EXPECT_EQ(facets_of_one_cell(mesh), outer_facets(mesh).size());
+}
+
+TEST_F(RegionSurfaces, ThatPokeOutOfTheBodyAreClippedAndThoseThatOverlapPaintedOver) {
+  Mesh mesh = cube();
+  const Surface half = test::moved(test::box({1, 1, 1}, 3), 1, {0.6, 0, 0}),
+                lower = test::moved(test::box({1, 1, 0.5}, 3), 1, {0, 0, -0.1});
+  const auto notes = mark_regions({enclosed("half.stl", half), enclosed("lower.stl", lower)}, 1, mesh);
+  EXPECT_NEAR(volume_of(mesh, 1), 0.4 * 0.6, 5e-3);
+  EXPECT_NEAR(volume_of(mesh, 2), 0.4, 5e-3);
+  EXPECT_WORDS(notes.at(0), "60 % of its shape lies outside of the body");
+  EXPECT_WORDS(notes.at(0), "40 % of it lies in later regions");
+  EXPECT_EQ(facets_of_one_cell(mesh), outer_facets(mesh).size());
+}
+
+TEST_F(RegionSurfaces, OfAllTheBodyAreIt) {
+  Mesh mesh = cube();
+  EXPECT_WORDS(mark_regions({enclosed("all.stl", test::box({1, 1, 1}, 4))}, 1, mesh).at(0), "[material] is not used");
+  EXPECT_NEAR(volume_of(mesh, 1), 1, 1e-12);
+}
+
+TEST_F(RegionSurfaces, ThatCannotBeTakenAreRefusedAtTheirLine) {
+  EXPECT_WORDS(refusal_of({enclosed("far.stl", test::moved(test::sphere(0.3, 2), 1, {5, 5, 5}))}, cube()),
+               "case.toml:7:1: region: 'part' holds no part of the body: its surface reaches from (4.7, 4.7, 4.7) to "
+               "(5.3, 5.3, 5.3) m, with scale = 1");
+  Surface open = test::sphere(0.3, 2);
+  open.triangles.pop_back();
+  EXPECT_WORDS(refusal_of({enclosed("open.stl", open)}, cube()), "case.toml:7:1: region 'part': ");
+  EXPECT_WORDS(refusal_of({enclosed("open.stl", open)}, cube()), "open.stl: ");
+  write("none.stl", "nothing");
+  EXPECT_WORDS(refusal_of({region(EnclosedPlace{folder_.path / "none.stl"})}, cube()), "none.stl");
+}
+
 /// A brick of two cells along x, each a physical volume.
 constexpr const char* two_bricks =
     "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n3 1 \"soft\"\n3 2 \"stiff\"\n$EndPhysicalNames\n"
@@ -241,7 +304,23 @@ TEST_F(RegionFiles, OfAMeshAreThoseOfItsCells) {
   EXPECT_EQ(cut.mesh.tetrahedra.size(), 64 * cut.coarser[0].tetrahedra.size());
   EXPECT_NEAR(volume_of(cut.mesh, 1), 1, 1e-12);
   EXPECT_NEAR(volume_of(cut.coarser[0], 1), 1, 1e-12);
-  EXPECT_WORDS(message_of({.file = file, .edge = 0.005, .volumes = {"stiff"}}), "cut into eight");
+}
+
+TEST_F(RegionFiles, OfAMeshOfManyCellsAreCutIntoOneFilledAnew) {
+  const fs::path file = folder_.path / "many.msh";
+  const fs::path geo =
+      write("many.geo", halves_ + "Mesh.CharacteristicLengthMax = 0.13;\nMesh 3;\nSave \"" + file.string() + "\";\n");
+  mesh_body({.file = geo, .size = {3, 1, 1}, .edge = 0.5, .volumes = {"small", "7"}});
+  const MeshedBody body = mesh_body({.file = file, .edge = 0.2, .volumes = {"small"}, .coarser = {2.25, 1.5}});
+  ASSERT_EQ(body.coarser.size(), 2u);
+  for (const auto& [mesh, times] :
+       {std::pair(&body.mesh, 1.0), std::pair(&body.coarser[1], 1.5), std::pair(&body.coarser[0], 2.25)}) {
+    const double chords = 1e-3 * times * times;
+    EXPECT_NEAR(volume_of(*mesh, 1), 1, chords);
+    EXPECT_NEAR(volume_of(*mesh, 0), 2, chords);
+    EXPECT_EQ(facets_of_one_cell(*mesh), outer_facets(*mesh).size());
+  }
+  EXPECT_LT(body.mesh.tetrahedra.size(), 20000u);
 }
 
 }  // namespace

@@ -227,6 +227,31 @@ TEST(CalculixDeck, GravityIsTheBodysWeight) {
   EXPECT_LE((calculix::external_loads(deck).colwise().sum().transpose() - 3000 * Vec3(0, 3, -4)).norm(), 1e-8);
 }
 
+TEST(CalculixDeck, HasASectionForEachRegion) {
+  Experiment e = bar();
+  e.loads.push_back(Gravity{Vec3(0, 0, -10)});
+  e.regions = {{"stiff end", {1e7, 0.45, 3000}, {}, {}}};
+  Mesh mesh = block_mesh(size, cells);
+  for (const Hexahedron& cell : mesh.hexahedra) mesh.materials.push_back(mesh.nodes(cell[0], 0) > 1);
+  const Deck deck = calculix::make_deck(e, {1e4, 0.3, 1000}, mesh);
+  EXPECT_EQ(deck.element, "C3D20R");
+  std::map<std::string, std::string> material_of;
+  std::map<std::string, std::size_t> elements_of;
+  for (const Block& b : read_back(deck)) {
+    if (const std::string head = "*SOLID SECTION, ELSET="; b.keyword.starts_with(head)) {
+      const std::size_t comma = b.keyword.find(',', head.size());
+      material_of[b.keyword.substr(head.size(), comma - head.size())] = b.keyword.substr(comma + 2);
+    }
+    if (const std::string head = "*ELSET, ELSET="; b.keyword.starts_with(head))
+      for (const auto& line : b.lines) elements_of[b.keyword.substr(head.size())] += line.size();
+  }
+  EXPECT_EQ(material_of, (std::map<std::string, std::string>{{"IN_NO_REGION", "MATERIAL=SOLID"},
+                                                             {"REGION_STIFF_END", "MATERIAL=OF_STIFF_END"}}));
+  EXPECT_EQ(elements_of, (std::map<std::string, std::size_t>{{"IN_NO_REGION", 8}, {"REGION_STIFF_END", 4}}));
+  const double kg = 1000 * 2 + 3000;
+  EXPECT_LE((calculix::external_loads(deck).colwise().sum().transpose() - kg * Vec3(0, 0, -10)).norm(), 1e-8);
+}
+
 TEST(CalculixDeck, WritesEachLawAsItsCounterpart) {
   Experiment e = bar();
   EXPECT_EQ(block(read_back(deck_of(e)), "*STEP").keyword, "*STEP");

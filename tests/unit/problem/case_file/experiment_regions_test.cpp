@@ -1,6 +1,8 @@
 // [[region]]: what is read, what is refused.
 #include <gtest/gtest.h>
 
+#include <regex>
+
 #include "problem/case_file/experiment.h"
 #include "support/case_file.h"
 #include "support/says.h"
@@ -45,6 +47,20 @@ TEST(CaseWithRegions, IsRead) {
   EXPECT_EQ(std::get<std::string>(e.regions[1].place), "3");
   EXPECT_EQ(e.regions[1].material.density, 1100);  // of [material]
   EXPECT_EQ(std::get<PatchRule::Near>(e.regions[2].place).radius, 0.1);
+}
+
+TEST(CaseWithRegions, TakesASurfaceInTheLengthsOfTheBody) {
+  const std::string moduli = "youngs_modulus_Pa = 1\npoisson_ratio = 0\n";
+  const std::string stl = "[[region]]\nname = \"a\"\nstl = \"a.stl\"\n" + moduli;
+  const auto place = [&](std::string text) {
+    return std::get<EnclosedPlace>(parse_experiment(text, "folder/case.toml").regions.at(0).place);
+  };
+  const std::string scaled = std::regex_replace(body, std::regex("voxels"), "scale = 0.01\nvoxels");
+  EXPECT_EQ(place(scaled + alone + stl).file, "folder/a.stl");
+  EXPECT_EQ(place(scaled + alone + stl).scale, 0.01);
+  EXPECT_EQ(place(scaled + alone + stl + "scale = 0.5\n").scale, 0.5);
+  EXPECT_WORDS(message_of(body + alone + tumour + "scale = 2\n"), "region.scale: is of a file (allowed: beside stl)");
+  EXPECT_WORDS(message_of(body + alone + tumour + "stl = \"a.stl\"\n"), "says twice where it lies");
 }
 
 TEST(CaseWithRegions, SaysOnceWhereEachLiesAndOfWhat) {

@@ -45,6 +45,8 @@ Values beside(const std::string& table, const std::string& key) {
       {"region.box_m", no_volume},
       {"region.near", no_volume},
       {"region.beyond", no_volume},
+      {"region.stl", no_volume},
+      {"region.scale", {{"volume", ""}, {"stl", "\"tumour.stl\""}}},
       {"region.shear_modulus_Pa", no_young},
       {"region.bulk_modulus_Pa", no_young},
       {"region.lame_lambda_Pa", no_young},
