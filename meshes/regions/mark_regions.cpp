@@ -398,17 +398,20 @@ double paint(const SolidShape& shape, std::uint8_t number, double coarseness, Me
   if (std::isfinite(shape.across)) into.refine(shape.across / edges_across * coarseness);
   into.along_borders();
   std::vector<std::uint8_t> materials = cut.materials();
-  std::vector<Eigen::Index> held;
+  std::vector<std::size_t> held;
   for (std::size_t c = 0; c < cut.cells(); ++c)
     if (into.holds(cut.tetrahedra()[c])) {
-      held.push_back(static_cast<Eigen::Index>(c));
+      held.push_back(c);
       materials[c] = std::max(materials[c], number);
     }
   cut.set_materials(std::move(materials));
   for (const RegionBorder& border : shape.borders)
     if (border.is_sphere()) give_volume(border.plain, number, on_border * extent_of(mesh), cut);
   mesh = cut.mesh(patches);
-  return cell_volumes(mesh, mesh.nodes)(held).sum();
+  const Eigen::VectorXd volumes = cell_volumes(mesh, mesh.nodes);
+  double sum = 0;
+  for (const std::size_t c : held) sum += volumes[static_cast<Eigen::Index>(c)];
+  return sum;
 }
 
 /// Of hexahedra: those in the shape.

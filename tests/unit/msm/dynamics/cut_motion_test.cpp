@@ -67,12 +67,12 @@ void expect_conserved(const MassSpringModel& model) {
       double kinetic = 0, speeds = 0, spins = 0;
       Vec3 p = Vec3::Zero(), L = Vec3::Zero();
       for (Eigen::Index n = 0; n < v.rows(); ++n) {
-        const Vec3 at = x.row(n).transpose(), mv = mass[n] * v.row(n).transpose();
+        const Vec3 X = x.row(n).transpose(), mv = mass[n] * v.row(n).transpose();
         kinetic += mv.dot(v.row(n).transpose()) / 2;
         p += mv;
-        L += at.cross(mv);
+        L += X.cross(mv);
         speeds += mv.norm();
-        spins += at.cross(mv).norm();
+        spins += X.cross(mv).norm();
       }
       energy_off = std::max(energy_off, std::abs(kinetic + energy(model, x) - start));
       momentum = std::max(momentum, p.norm());
