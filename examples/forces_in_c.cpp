@@ -90,7 +90,8 @@ int main(int count, char** arguments) try {
            : edge.is_array() ? sp_averaged_sizes(count, cells.data(), edges.data(), parts, springs, x.data(), f)
                              : sp_averaged_cut(count, cells.data(), edges[0], parts, springs, x.data(), f);
     }
-    W += sp_bonds(bonded.size() / 16, bonded.data(), bond_weights.data(), bond_stiffness.data(), x.data(), f);
+    W += sp_bonds(bonded.size() / 16, bonded.data(), bond_weights.data(), bond_stiffness.data(),
+                  edges.empty() ? 1 : edges[0], x.data(), f);
     if (f) sp_hand_back(carried_nodes.size(), carried_nodes.data(), carried_by.data(), f);
     return W;
   };

@@ -344,20 +344,43 @@ static double sp_averaged_materials(size_t cells, const int* nodes, double edge,
   return energy;
 }
 
-/* Bonds between the cells of two materials: W = g . K g / 2, g the mean of the first eight nodes of a bond less that of
- * the others.  nodes, weights: count x 16; K: count x 9 [N/m]. */
-static double sp_bonds(size_t count, const int* nodes, const double* weights, const double* K, const double* x,
-                       double* f) {
+/* Whether a bond is stiffer along some axes: then it turns with its cells. */
+static int sp_bond_turns(const double K[9]) {
+  for (int i = 0; i < 9; ++i)
+    if (K[i] != (i % 4 == 0 ? K[0] : 0)) return 1;
+  return 0;
+}
+
+/* Bonds between the cells of two materials: W = v . K v / 2, v the gap g, the mean of the first eight nodes of a bond
+ * less that of the others, or, where K is no multiple of 1, F^T g, F the mean deformation gradient of both cells.
+ * nodes, weights: count x 16; K: count x 9 [N/m]; edge of the cells [m]. */
+static double sp_bonds(size_t count, const int* nodes, const double* weights, const double* K, double edge,
+                       const double* x, double* f) {
   double energy = 0;
   for (size_t b = 0; b < count; ++b) {
-    double g[3] = {0};
-    for (size_t n = 16 * b; n < 16 * b + 16; ++n)
-      for (int c = 0; c < 3; ++c) g[c] += (n < 16 * b + 8 ? 1 : -1) * weights[n] * x[3 * nodes[n] + c];
-    for (int c = 0; c < 3; ++c) {
-      const double force = K[9 * b + 3 * c] * g[0] + K[9 * b + 3 * c + 1] * g[1] + K[9 * b + 3 * c + 2] * g[2];
-      energy += 0.5 * force * g[c];
-      for (size_t n = 16 * b; f && n < 16 * b + 16; ++n)
-        f[3 * nodes[n] + c] -= (n < 16 * b + 8 ? 1 : -1) * weights[n] * force;
+    const int turns = sp_bond_turns(K + 9 * b);
+    double g[3] = {0}, F[3][3] = {{0}}, force[3] = {0}, v[3] = {0};
+    for (int c = 0; c < 3; ++c) F[c][c] = !turns;
+    for (int n = 0; n < 16; ++n) {
+      const double* at = x + 3 * nodes[16 * b + n];
+      for (int c = 0; c < 3; ++c) {
+        g[c] += (n < 8 ? 1 : -1) * weights[16 * b + n] * at[c];
+        for (int j = 0; turns && j < 3; ++j) F[c][j] += at[c] * sp_sign[n % 8][j] / (8 * edge);
+      }
+    }
+    for (int i = 0; i < 3; ++i)
+      for (int c = 0; c < 3; ++c) v[i] += F[c][i] * g[c];
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) force[i] += K[9 * b + 3 * i + j] * v[j];
+      energy += 0.5 * force[i] * v[i];
+    }
+    for (int n = 0; f && n < 16; ++n) {
+      double along = 0;
+      for (int j = 0; turns && j < 3; ++j) along += sp_sign[n % 8][j] / (8 * edge) * force[j];
+      for (int c = 0; c < 3; ++c) {
+        const double of_gap = F[c][0] * force[0] + F[c][1] * force[1] + F[c][2] * force[2];
+        f[3 * nodes[16 * b + n] + c] -= (n < 8 ? 1 : -1) * weights[16 * b + n] * of_gap + along * g[c];
+      }
     }
   }
   return energy;

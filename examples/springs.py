@@ -130,11 +130,13 @@ def materials(law, cells):  # the constants and the cells of each material
     of = [cells["material"] == m for m in range(1 + len(law["regions"]))]
     return [(one, {key: v[here] if np.shape(v)[:1] == here.shape else v for key, v in cells.items()}) for one, here in zip([law, *law["regions"]], of) if here.any()]
 
-def bonds(s, x, f):  # between the means of cells of two materials
-    b = s["bonds"]
-    w = b["weights"] * np.repeat([1, -1], 8)
-    force = np.einsum("bij,bj->bi", b["stiffness_N_m"].reshape(-1, 3, 3), np.einsum("bn,bni->bi", w, x[b["nodes"]]))
-    np.add.at(f, b["nodes"], -w[:, :, None] * force[:, None, :])
+def bonds(s, x, f):  # between the means of cells of two materials; K v, v = F^T gap, F of both cells where K is no multiple of 1
+    b, frame = s["bonds"], np.concatenate([SIGN, SIGN]) / (8 * s["cells"]["edge_m"])
+    w, K, at = b["weights"] * np.repeat([1, -1], 8), b["stiffness_N_m"].reshape(-1, 3, 3), x[b["nodes"]]
+    turns = (K != K[:, :1, :1] * np.eye(3)).any(axis=(1, 2))[:, None, None]
+    gap, F = np.einsum("bn,bni->bi", w, at), np.where(turns, np.einsum("bni,nj->bij", at, frame), np.eye(3))
+    force = np.einsum("bij,bkj,bk->bi", K, F.transpose(0, 2, 1), gap)
+    np.add.at(f, b["nodes"], -w[:, :, None] * np.einsum("bij,bj->bi", F, force)[:, None, :] - turns * np.einsum("nj,bj,bi->bni", frame, force, gap))
 
 def averaged(law, cells, x, f):
     if law["shift"]: sys.exit("averaged springs with a shift are linear: not here")

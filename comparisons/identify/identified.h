@@ -18,7 +18,7 @@ struct IdentifiedParameter {
   bool held = false;  ///< the values do not tell it: it stays at its start; the rest is what it would be if it were not
   double value = 0;
   double u_data = 0;                       ///< standard uncertainty by the fitted values
-  std::optional<double> u_inputs = {};     ///< by the inputs; empty: a run with one of them changed has no value
+  std::optional<double> u_inputs = {};     ///< by the inputs whose runs have values; empty: it is held
   std::optional<double> u_numerical = {};  ///< by what is not known of the limit of the lattices; empty: one lattice
   double u = 0;                            ///< of all that is known
   double from = 0, to = 0;                 ///< limits of 95 %, within the bounds

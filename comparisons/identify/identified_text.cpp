@@ -46,10 +46,12 @@ std::string values_text(const Identified& out) {
   for (const bool fitted : {true, false})
     for (const IdentifiedValue& v : out.values)
       if (v.fitted == fitted)
-        text += fmt::format(form, v.name, number_or_none(v.simulated, "{:.5g}"), fmt::format("{:.5g}", v.measured),
-                            v.unit, number_or_none(v.residual, "{:+.2f}"),
-                            v.u_val ? fmt::format("{:.1f}", 100 * *v.u_val / std::abs(v.measured)) : "",
-                            fitted ? "fitted" : number_or_none(v.ratio, "{:.1f}"));
+        text += fmt::format(
+            form, v.name, number_or_none(v.simulated, "{:.5g}"),
+            std::isfinite(v.measured) ? fmt::format("{:.5g}", v.measured) : "awaited", v.unit,
+            number_or_none(v.residual, "{:+.2f}"),
+            v.u_val && std::isfinite(v.measured) ? fmt::format("{:.1f}", 100 * *v.u_val / std::abs(v.measured)) : "",
+            fitted ? "fitted" : number_or_none(v.ratio, "{:.1f}"));
   return text;
 }
 

@@ -63,11 +63,10 @@ class Fitting {
                 sought_of(s, &SoughtParameter::lower),
                 sought_of(s, &SoughtParameter::upper),
                 {}};
-    problem_.step = problem_.start;
-    for (Index i = 0; i < problem_.step.size(); ++i)
-      problem_.step[i] = s.parameters[static_cast<std::size_t>(i)].logarithmic
-                             ? log_step
-                             : step_of_range * (problem_.upper[i] - problem_.lower[i]);
+    const VectorXd range = problem_.upper - problem_.lower;
+    problem_.step = step_of_range * range;
+    for (Index i = 0; i < range.size(); ++i)
+      if (s.parameters[static_cast<std::size_t>(i)].logarithmic) problem_.step[i] = std::min(log_step, range[i] / 4);
   }
 
   Identified result(int synthetic);
@@ -97,7 +96,8 @@ class Fitting {
   HeldFit found_;
   std::vector<LatticeValues> on_lattices_;        ///< of each measured value, at the fit
   std::vector<Maybe> u_numerical_;                ///< of each
-  std::vector<std::vector<Maybe>> by_input_;      ///< of each uncertain input, the change of each value
+  std::vector<std::size_t> inputs_;               ///< uncertain, and of no parameter that is found
+  std::vector<std::vector<Maybe>> by_input_;      ///< of each of these, the change of each value
   std::vector<std::vector<Maybe>> by_parameter_;  ///< derivative of each value by each parameter, as it is sought
   MatrixXd answer_;                               ///< change of the free parameters per residual
   std::vector<Index> free_;
@@ -178,8 +178,13 @@ void Fitting::read_influences() {
     moved[p] = std::max(at[p] + step, problem_.lower[p]);
     by_parameter_.push_back(change(model_.at(numbers_of(s_, moved), 0, all), moved[p] - at[p]));
   }
-  for (const std::size_t input : s_.inputs)
-    by_input_.push_back(change(model_.at(numbers_of(s_, at), 0, all, input), 1));
+  for (const OtherInput& input : s_.inputs) {
+    const bool found =
+        std::any_of(input.sought.begin(), input.sought.end(), [&](std::size_t p) { return !found_.held[p]; });
+    if (found) continue;
+    inputs_.push_back(input.number);
+    by_input_.push_back(change(model_.at(numbers_of(s_, at), 0, all, input.number), 1));
+  }
 }
 
 /// What moves a free parameter by so much in each fitted value; empty: one is not known.
@@ -196,17 +201,15 @@ Maybe Fitting::moved(Index free, const std::vector<Maybe>& change) const {
 /// Sets the uncertainties by inputs and lattices, as it is sought, of a parameter that is not held.
 void Fitting::set_uncertainties(Index free, double scale, IdentifiedParameter& p) const {
   double squares = 0;
-  bool known = true;
-  for (std::size_t i = 0; i < s_.inputs.size(); ++i) {
+  for (std::size_t i = 0; i < inputs_.size(); ++i) {
     const Maybe change = moved(free, by_input_[i]);
-    known = known && change;
     squares += std::pow(change.value_or(0), 2);
-    p.inputs.push_back({e_.inputs[s_.inputs[i]].name, change ? Maybe(scale * *change) : Maybe(), false});
+    p.inputs.push_back({e_.inputs[inputs_[i]].name, change ? Maybe(scale * *change) : Maybe(), false});
   }
-  if (known) p.u_inputs = scale * std::sqrt(squares);
+  p.u_inputs = scale * std::sqrt(squares);
   std::vector<Maybe> in_limits = u_numerical_;  // all lattices are too stiff, or too soft, together
   for (std::size_t m = 0; m < in_limits.size(); ++m)
-    if (in_limits[m] && on_lattices_[m].values.back() < 0) in_limits[m] = -*in_limits[m];
+    if (in_limits[m] && on_lattices_[m].values.back() < on_lattices_[m].values.front()) in_limits[m] = -*in_limits[m];
   if (const Maybe change = moved(free, in_limits)) p.u_numerical = scale * std::abs(*change);
 }
 
@@ -267,7 +270,7 @@ void Fitting::set_prediction(std::size_t m, IdentifiedValue& v) const {
   v.u_fit =
       (found_.jacobian(Eigen::all, free_) * certainty_of(found_.jacobian(Eigen::all, free_)).covariance * slope).norm();
   double squares = 0;
-  for (std::size_t i = 0; i < s_.inputs.size(); ++i) {
+  for (std::size_t i = 0; i < inputs_.size(); ++i) {
     const Maybe change = change_by_input(m, i);
     if (!change) return;
     squares += std::pow(*change, 2);
@@ -348,6 +351,33 @@ std::string step_words(const Identified& out, const KnownDirection& direction) {
   return fmt::format("{}", fmt::join(words, " with "));
 }
 
+bool disagree(const Identified& out) {
+  return out.freedom > 0 && out.chi2 > out.freedom + 2 * std::sqrt(2.0 * out.freedom);
+}
+
+/// Of a parameter, over its range, as it is sought.
+double share_of_range(const IdentifiedParameter& p) {
+  return p.logarithmic ? p.u_data / p.value / std::log(p.upper / p.lower) : p.u_data / (p.upper - p.lower);
+}
+
+/// What the uncertainties leave out.
+std::vector<std::string> lacks_of(const Identified& out) {
+  std::vector<std::string> all;
+  for (const IdentifiedParameter& p : out.parameters) {
+    if (p.held) continue;
+    std::vector<std::string> without;
+    for (const InputShare& input : p.inputs)
+      if (!input.change) without.push_back("'" + input.input + "'");
+    if (!without.empty())
+      all.push_back(fmt::format("The limits of {} are without the input {}: with it changed a fitted value is missing.",
+                                p.name, fmt::join(without, ", ")));
+    if (!p.u_numerical)
+      all.push_back(
+          fmt::format("The limits of {} are without the cells: there is no limit of several lattices.", p.name));
+  }
+  return all;
+}
+
 std::vector<std::string> sentences_of(const Identified& out) {
   std::vector<std::string> all;
   bool held = false;
@@ -355,8 +385,11 @@ std::vector<std::string> sentences_of(const Identified& out) {
     held = held || p.held;
     if (p.held)
       all.push_back(fmt::format(
-          "The values do not tell {}: it is held at {:.6g}, and anything from {:.3g} to {:.3g} would fit as well.",
-          p.name, p.value, p.from, p.to));
+          "The values do not tell {}: it is held at {:.6g}{}.", p.name, p.value,
+          disagree(out) ? "" : fmt::format(", and anything from {:.3g} to {:.3g} would fit as well", p.from, p.to)));
+    else if (share_of_range(p) > most_of_range)
+      all.push_back(fmt::format("The values do not tell {}: anything from {:.3g} to {:.3g} would fit as well.", p.name,
+                                p.from, p.to));
     else if (p.value <= p.lower || p.value >= p.upper)
       all.push_back(fmt::format("{} is at its bound, {:.6g}.", p.name, p.value));
   }
@@ -367,7 +400,8 @@ std::vector<std::string> sentences_of(const Identified& out) {
       if (!out.parameters[i].held && !out.parameters[k].held && std::abs(out.correlation[i][k]) > most_correlation)
         all.push_back(fmt::format("{} and {} are all but told together: their correlation is {:.3f}.",
                                   out.parameters[k].name, out.parameters[i].name, out.correlation[i][k]));
-  if (out.freedom > 0 && out.chi2 > out.freedom + 2 * std::sqrt(2.0 * out.freedom))
+  for (std::string& lack : lacks_of(out)) all.push_back(std::move(lack));
+  if (disagree(out))
     all.push_back(
         fmt::format("The fitted values do not agree with one another within their u: chi² = {:.3g} of {}; worst: {}.",
                     out.chi2, out.freedom, out.worst));

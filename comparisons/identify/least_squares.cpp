@@ -104,9 +104,11 @@ LeastSquaresFit fit(const BoundedFit& p) {
     out.message = "the model has no result beside the parameters that were found";
     if (!J) return out;
     bool better = false;
+    // Of the whole step: a damped one is small wherever there is no result beyond.
+    out.converged = (*J * step_of(p, out.parameters, *J, out.residuals, 0)).cwiseAbs().maxCoeff() < smallest_change;
+    if (out.converged) damping = 0;
     for (int tries = 0; tries < most_dampings && !better; ++tries) {
       const VectorXd step = step_of(p, out.parameters, *J, out.residuals, damping);
-      out.converged = (*J * step).cwiseAbs().maxCoeff() < smallest_change;
       r = p.residuals(out.parameters + step);
       better = r && r->squaredNorm() <= out.residuals.squaredNorm();
       if (better) {

@@ -33,7 +33,7 @@ std::optional<Eigen::MatrixXd> jacobian_of(const BoundedFit& problem, const Eige
                                            const Eigen::VectorXd& r);
 
 /// Gauss-Newton's method, damped as by Levenberg and Marquardt where a step fails; parameters at a bound stay there
-/// while the residuals push them out.  Converged: the next step would change no residual by a hundredth.
+/// while the residuals push them out.  Converged: the next step, undamped, would change no residual by a hundredth.
 LeastSquaresFit fit(const BoundedFit& problem);
 
 /// What residuals of standard uncertainty 1 tell of the parameters, to first order.

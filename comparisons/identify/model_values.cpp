@@ -10,6 +10,7 @@
 #include "comparisons/results/records_json.h"
 #include "comparisons/run/case_run.h"
 #include "comparisons/run/prepare.h"
+#include "fem_reference/exchange/reference.h"
 #include "problem/case_file/measures.h"
 #include "problem/files/checksum.h"
 #include "problem/system/progress.h"
@@ -41,7 +42,7 @@ ModelValues::ModelValues(const Experiment& e, const Identification& sought, std:
     : experiment_(e),
       sought_(sought),
       folder_(std::move(folder)),
-      stamp_(input_checksum(e)),
+      stamp_(fmt::format("{} {} {}", SPRINGPROOF_VERSION, fem::version(), input_checksum(e))),
       lattices_(!sought.cells.empty()  ? sought.cells
                 : e.body.cells.empty() ? std::vector<Cells>(e.body.resolutions(), Cells{0, 0, 0})
                                        : e.body.cells) {

@@ -283,6 +283,9 @@ Experiment case_of_modes(Experiment e, const FrequencyOptions& options) {
     e.loads.clear();
     e.load_locations.clear();
   }
+  for (const ModelChoice& m : e.models)  // whose cells have one density
+    if (!is_external(m) && resolve(m).coarsened.value_or(e.body.coarsened))
+      require_one_material(e, "the frequencies of coarsened cells");
   e.measures.clear();
   e.expectations.clear();
   e.elements.clear();

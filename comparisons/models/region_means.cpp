@@ -135,9 +135,14 @@ void add_bonds(const Network& network, const NodalVectors& u, Kinematics kinemat
   std::map<Hexahedron, int> material_of;
   for (std::size_t c = 0; c < network.cells.size(); ++c)
     material_of[network.cells.corners[c]] = network.cells.material(c);
-  for (const InterfaceBond& bond : network.bonds)
+  for (const InterfaceBond& bond : network.bonds) {
+    double apart = 1;  // what acts on corners that both cells have is among the forces of these
+    for (int n = 0; n < 8; ++n)
+      for (int m = 0; m < 8; ++m)
+        if (bond.corners[0][n] == bond.corners[1][m]) apart -= (bond.weights[0][n] + bond.weights[1][m]) / 2;
     forces.add(material_of.at(bond.corners[0]), material_of.at(bond.corners[1]),
-               force_of(bond, network, u, kinematics));
+               apart * force_of(bond, network, u, kinematics));
+  }
 }
 
 /// Of corners that cells of several materials have.

@@ -15,6 +15,7 @@ std::string input_checksum(const Experiment& e) {
   for (const auto& file : files_behind(find_geo(e.body, e.file))) add(file);
   for (const MaterialRegion& region : e.regions)
     if (const auto* in = std::get_if<EnclosedPlace>(&region.place)) add(in->file);
+  for (const std::filesystem::path& history : e.histories) add(history);
   for (const ModelChoice& model : e.models)
     if (!model.file.empty()) add(model.file);
   return checksum(all);

@@ -322,18 +322,21 @@ namespace {
 std::vector<std::map<std::string, double>> measures_on_grids(const PreparedCase& prepared, const ElementGrids& e) {
   std::vector<std::map<std::string, double>> values;
   for (const fem::Solution& s : e.grids) values.push_back(measures_of(prepared, s));
+  for (auto& on_grid : values)  // two regions may touch on one mesh alone
+    for (const auto& [measure, value] : values.back())
+      if (measure.starts_with("interface.")) on_grid.try_emplace(measure, 0);
   return values;
 }
 
-}  // namespace
-
 /// Of a region the smaller of its own and the body's, whose strain it has at most.
-static double modulus_behind(const std::string& measure, const Experiment& e) {
+double modulus_behind(const std::string& measure, const Experiment& e) {
   double modulus = e.materials.front().youngs_modulus;
   for (const MaterialRegion& r : e.regions)
     if (measure.starts_with("region." + r.name + ".")) modulus = std::min(modulus, r.material.youngs_modulus);
   return modulus;
 }
+
+}  // namespace
 
 std::map<std::string, ReferenceValue> limits_of(const PreparedCase& prepared, const ElementGrids& e) {
   const std::vector<std::map<std::string, double>> values = measures_on_grids(prepared, e);

@@ -82,7 +82,7 @@ std::string kinematics_of_models(const Experiment& e) {
 
 /// Cut cells, or whole ones.
 std::size_t cells_in_body(const Lattice& lattice, const ModelParameters& parameters) {
-  return parameters.cut.value_or(false) ? lattice.cut->cells.size() : lattice.mesh->hexahedra.size();
+  return parameters.cut.value_or(false) ? cells_of(lattice, parameters).cells.size() : lattice.mesh->hexahedra.size();
 }
 
 /// What is recorded of the run of a sample, with a result or without.

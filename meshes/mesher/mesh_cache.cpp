@@ -18,15 +18,14 @@ namespace fs = std::filesystem;
 // File format: this heading (problem/files/checked_file.h), then the key and the answer of the mesher.
 const KeptKind kept_mesh = {"mesh", ".cbor", "springproof mesh 1 "};
 
-/// Another file in its place, or another content, has another line.
+}  // namespace
+
 std::string line_of(const fs::path& file) {
   struct stat s {};
   stat(file.c_str(), &s);
   return fmt::format("{} {} {} {}.{:09}\n", fs::absolute(file).string(), s.st_ino, s.st_size, s.st_ctim.tv_sec,
                      s.st_ctim.tv_nsec);
 }
-
-}  // namespace
 
 fs::path kept_folder() {
   if (const char* given = std::getenv("SPRINGPROOF_MESH_CACHE")) return given;

@@ -14,6 +14,9 @@ namespace springproof {
 /// $XDG_CACHE_HOME/springproof/meshes or ~/.cache/springproof/meshes; empty: nowhere.
 std::filesystem::path kept_folder();
 
+/// Of a file: another one in its place, or another content, has another line.
+std::string line_of(const std::filesystem::path& file);
+
 /// A place for one mesh among those kept (problem/files/kept_file.h).
 class MeshCache {
  public:

@@ -221,7 +221,7 @@ namespace {
 MeshedBody meshed_once(const MeshRequest& request) {
   static std::mutex mutex;
   static std::map<std::string, MeshedBody> made;
-  const std::string key = to_cbor(request);
+  const std::string key = to_cbor(request) + line_of(request.file);
   {
     const std::lock_guard lock(mutex);
     if (const auto before = made.find(key); before != made.end()) return before->second;

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 #include "meshes/field.h"
 #include "meshes/mesher/mesher.h"
@@ -55,12 +56,29 @@ PatchRule rule_of(const std::string& name, const std::optional<std::pair<Numbers
   return rule;
 }
 
+constexpr double of_body = 0;  // scale of a region's surface that is not given
+
+/// The regions of a body whose file has that scale.
+std::vector<MaterialRegion> scaled(std::vector<MaterialRegion> regions, double scale) {
+  constexpr std::size_t most = 255;  // numbers of Mesh::materials
+  if (regions.size() > most)
+    throw InputError(fmt::format("regions: there are {} (allowed: up to {})", regions.size(), most));
+  std::set<std::string> names;
+  for (MaterialRegion& region : regions) {
+    if (!names.insert(region.name).second)
+      throw InputError(fmt::format("regions: '{}' is the name of two (allowed: a name of its own)", region.name));
+    if (auto* enclosed = std::get_if<EnclosedPlace>(&region.place); enclosed && enclosed->scale == of_body)
+      enclosed->scale = scale;
+  }
+  return regions;
+}
+
 MaterialRegion region_of_place(const std::string& name, const IsotropicMaterial& material,
                                const std::optional<std::string>& volume,
                                const std::optional<std::pair<Numbers, Numbers>>& box,
                                const std::optional<std::pair<Numbers, double>>& near,
                                const std::optional<std::pair<Numbers, Numbers>>& beyond,
-                               const std::optional<fs::path>& stl, double scale) {
+                               const std::optional<fs::path>& stl, std::optional<double> scale) {
   if (volume.has_value() + box.has_value() + near.has_value() + beyond.has_value() + stl.has_value() != 1)
     throw InputError(
         fmt::format("region: '{}' needs one place (allowed: one of volume, box, near, beyond, stl)", name));
@@ -68,7 +86,7 @@ MaterialRegion region_of_place(const std::string& name, const IsotropicMaterial&
   if (volume)
     region.place = *volume;
   else if (stl)
-    region.place = EnclosedPlace{*stl, scale};
+    region.place = EnclosedPlace{*stl, scale.value_or(of_body)};
   else {
     const PatchRule rule = rule_of(name, box, beyond, {}, near);
     box ? region.place = *rule.box : near ? region.place = *rule.near : region.place = *rule.beyond;
@@ -135,7 +153,8 @@ std::shared_ptr<SolidBody> voxels_of(const fs::path& file, int cubes, std::optio
   if (edge && (!(*edge > 0) || !std::isfinite(*edge)))
     throw InputError(fmt::format("edge: is {} (allowed: a length > 0 [m])", *edge));
   if (cubes < 1 || cubes > 4000000) throw InputError(fmt::format("cubes: is {} (allowed: 1 to 4000000)", cubes));
-  return long_call([&] { return std::make_shared<SolidBody>(cut_out(request, edge, cubes, patches, regions)); });
+  return long_call(
+      [&] { return std::make_shared<SolidBody>(cut_out(request, edge, cubes, patches, scaled(regions, scale))); });
 }
 
 py::dict patches_of(const SolidBody& body) {
@@ -190,9 +209,10 @@ facing: a direction and the largest angle to it [degrees]; near: a point [m] and
                              R"(A part of a body of another material, in one place; where two overlap, the later.
 
 volume: of the body's file, by name or number; box, near, beyond: as of a Patch; stl: a file of a closed surface, whose
-coordinates `scale` multiplies.)")
+coordinates `scale` multiplies, if given, else that of the body.)")
       .def(py::init(&region_of_place), "name"_a, "material"_a, py::kw_only(), "volume"_a = py::none(),
-           "box"_a = py::none(), "near"_a = py::none(), "beyond"_a = py::none(), "stl"_a = py::none(), "scale"_a = 1.0)
+           "box"_a = py::none(), "near"_a = py::none(), "beyond"_a = py::none(), "stl"_a = py::none(),
+           "scale"_a = py::none())
       .def_readonly("name", &MaterialRegion::name)
       .def_readonly("material", &MaterialRegion::material);
   py::class_<SolidBody, std::shared_ptr<SolidBody>>(

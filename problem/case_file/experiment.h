@@ -162,9 +162,10 @@ struct Experiment {
   std::vector<PublishedValue> published;
   std::vector<LoadCase> load_cases;  ///< beside measured values: the first is the case as written
   std::vector<UncertainInput> inputs;
-  std::vector<MeasuredValue> measured;  ///< that the first of `models` is judged by
-  std::vector<std::string> left_out;    ///< what was measured too, and is not compared
-  std::string text;                     ///< the file as read
+  std::vector<MeasuredValue> measured;           ///< that the first of `models` is judged by
+  std::vector<std::filesystem::path> histories;  ///< files behind some of these
+  std::vector<std::string> left_out;             ///< what was measured too, and is not compared
+  std::string text;                              ///< the file as read
 
   /// @return the solid of equilibria: a material of the case, relaxed for `loaded_for`
   IsotropicMaterial at_rest(const IsotropicMaterial& material) const;

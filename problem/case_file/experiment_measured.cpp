@@ -114,7 +114,7 @@ MeasuredValue read_value(const TomlValue& value, const Experiment& e) {
 
 /// The load case after another time under its loads, which may be there already.
 std::size_t load_case_after(double time, const LoadCase& of, Experiment& e) {
-  const std::string name = fmt::format("{} after {:g} s", of.name, time);
+  const std::string name = fmt::format("{} after {} s", of.name, time);
   for (std::size_t c = 0; c < e.load_cases.size(); ++c)
     if (e.load_cases[c].name == name) return c;
   e.load_cases.push_back({name, of.where, of.table, time});
@@ -130,19 +130,24 @@ void read_samples(const TomlValue& value, Experiment& e, const std::string& sour
   const MeasuredValue all = read_quantity(table, e);
   const LoadCase loads = e.load_cases[all.of];
   const Named unit = unit_in(e.units, unit_of(all.quantity));
-  const std::vector<HistorySample> samples =
-      read_history(std::filesystem::path(value.file).parent_path() / as_text(table.at("file")), unit.name);
+  const TomlValue file = table.at("file");
+  e.histories.push_back(std::filesystem::path(value.file).parent_path() / as_text(file));
+  const std::vector<HistorySample> samples = read_history(e.histories.back(), unit.name);
   const auto from_end = table.find("from_end");
   const bool subtracted = from_end && as_flag(*from_end);
+  if (subtracted && samples.size() < 2)
+    refuse(file, "has one sample, from which nothing is subtracted", "two at least");
+  const HistorySample& last = samples.back();
   for (const HistorySample& s : samples) {
     MeasuredValue m = all;
     m.history = all.name;
-    m.name = fmt::format("{}, {:g} s", all.name, s.time);
+    m.name = fmt::format("{}, {} s", all.name, s.time);
     m.time = s.time;
     m.of = load_case_after(s.time, loads, e);
-    if (subtracted) m.minus = load_case_after(samples.back().time, loads, e);
-    m.value = unit.in_si * (s.value - (subtracted ? samples.back().value : 0));
-    m.u = unit.in_si * s.u;
+    if (subtracted) m.minus = load_case_after(last.time, loads, e);
+    m.value = unit.in_si * (s.value - (subtracted ? last.value : 0));
+    m.u = unit.in_si * (subtracted ? std::hypot(s.u, last.u) : s.u);
+    check_size(file, e, m);
     m.source = source;
     m.licence = licence;
     if (m.minus != m.of) e.measured.push_back(m);

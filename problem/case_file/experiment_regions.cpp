@@ -117,6 +117,8 @@ std::vector<MaterialRegion> read_regions(const TomlTable& document, const Experi
       if (regions[i].name == regions.back().name)
         refuse(TomlTable(value, keys_of("region")).at("name"),
                fmt::format("'{}' is the name of another region", regions[i].name), "a name of its own");
+    if (regions.back().name == "body")  // as interface.NAME.body names what is in none
+      refuse(TomlTable(value, keys_of("region")).at("name"), "'body' is the rest of the body", "another name");
     if (regions.size() > most) refuse(value, fmt::format("is number {}", regions.size()), "up to 255 regions");
   }
   return regions;

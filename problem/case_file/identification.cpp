@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "problem/case_file/experiment_parts.h"
 #include "problem/case_file/varied.h"
@@ -119,22 +120,35 @@ std::string read_model(const TomlTable& table, const Experiment& e) {
   return model ? as_choice(*model, allowed) : e.models.front().label;
 }
 
-/// The uncertain inputs that change no number which is sought.
-std::vector<std::size_t> other_inputs(const toml::table& document, const Experiment& e,
-                                      const std::vector<SoughtParameter>& parameters) {
-  const auto sought = [&](const toml::node& path) {
-    return std::any_of(parameters.begin(), parameters.end(), [&](const SoughtParameter& p) {
-      return std::find(p.of.begin(), p.of.end(), path.value_or(std::string())) != p.of.end();
-    });
-  };
-  std::vector<std::size_t> inputs;
+/// The inputs with an uncertainty, those that the case fits among them.
+std::vector<OtherInput> other_inputs(const toml::table& document, const Experiment& e,
+                                     const std::vector<SoughtParameter>& parameters) {
+  std::vector<OtherInput> inputs;
   for (std::size_t i = 0; i < e.inputs.size(); ++i) {
-    if (e.inputs[i].kind != UncertainInput::Kind::uncertain) continue;
+    if (e.inputs[i].kind == UncertainInput::Kind::alternative) continue;
+    std::vector<std::string> changed;
     const toml::node* of = document["input"][i]["of"].node();
-    const toml::array* several = of->as_array();
-    if (several ? std::none_of(several->begin(), several->end(), sought) : !sought(*of)) inputs.push_back(i);
+    if (const toml::array* several = of->as_array())
+      for (const toml::node& path : *several) changed.push_back(path.value_or(std::string()));
+    else
+      changed.push_back(of->value_or(std::string()));
+    OtherInput input{i, {}};
+    for (std::size_t p = 0; p < parameters.size(); ++p)
+      if (std::any_of(changed.begin(), changed.end(), [&](const std::string& path) {
+            return std::find(parameters[p].of.begin(), parameters[p].of.end(), path) != parameters[p].of.end();
+          }))
+        input.sought.push_back(p);
+    inputs.push_back(std::move(input));
   }
   return inputs;
+}
+
+/// @throws InputError for a number that two parameters are.
+void check_parameters_differ(const TomlValue& place, const std::vector<SoughtParameter>& parameters) {
+  std::set<std::string> seen;
+  for (const SoughtParameter& p : parameters)
+    for (const std::string& path : p.of)
+      if (!seen.insert(path).second) refuse(place, fmt::format("'{}' is sought twice", path), "each number once");
 }
 
 Identification read_identification(const TomlValue& value, const Experiment& e) {
@@ -144,6 +158,7 @@ Identification read_identification(const TomlValue& value, const Experiment& e) 
   const TomlValue parameters = table.at("parameters");
   for (const TomlValue& item : as_list(parameters, "a list of { of, start, bounds }"))
     out.parameters.push_back(read_parameter(item, e));
+  check_parameters_differ(parameters, out.parameters);
   if (out.parameters.size() > out.fitted.size())
     refuse(parameters, fmt::format("{} parameters for {} fitted values", out.parameters.size(), out.fitted.size()),
            "as many values as parameters at least: more in fit, or fewer parameters");

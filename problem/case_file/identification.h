@@ -17,13 +17,19 @@ struct SoughtParameter {
   bool logarithmic = false;  ///< its logarithm is sought, where all that is allowed is positive, but of Poisson's ratio
 };
 
+/// An uncertain input of the case.
+struct OtherInput {
+  std::size_t number;
+  std::vector<std::size_t> sought;  ///< parameters whose number it changes: where one is found it is no input
+};
+
 struct Identification {
   std::string name;
   std::vector<SoughtParameter> parameters;
   std::vector<std::size_t> fitted;  ///< numbers of the measured values that are fitted; the others are predicted
   std::string model;                ///< label of a model of the case, or "fem_q1" and the like
   std::vector<Cells> cells;         ///< of its lattices; empty: those of the case
-  std::vector<std::size_t> inputs;  ///< numbers of the uncertain inputs, but for those that are sought
+  std::vector<OtherInput> inputs;
 };
 
 /// The tables of a case, in order.

@@ -140,6 +140,7 @@ Experiment one_of_each(Experiment e, const ExportRequest& request) {
     e.body.voxel_counts = {*request.voxels};
   }
   const bool measured = resolve(e.models.front()).coarsened.value_or(e.body.coarsened);
+  if (measured) require_one_material(e, "export of coarsened cells");
   if (e.body.accuracies.empty() && !measured) {  // cells are refined for the loads, and measured on the supports
     e.loads.clear();
     e.load_locations.clear();

@@ -76,6 +76,8 @@ TEST(LeastSquares, GoesAroundParametersThatHaveNoResult) {
   const LeastSquaresFit found = fit(p);
   EXPECT_TRUE(found.converged) << found.message;
   EXPECT_NEAR(found.parameters[0], 0.4, 1e-3);
+  p.residuals = [all](const VectorXd& at) { return at[0] > 0.2 ? std::nullopt : all(at); };
+  EXPECT_FALSE(fit(p).converged);  // short steps are no rest
   p.residuals = [](const VectorXd&) { return std::optional<VectorXd>(); };
   EXPECT_EQ(fit(p).message, "the model has no result at the start");
 }

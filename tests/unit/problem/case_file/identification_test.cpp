@@ -88,8 +88,10 @@ TEST(IdentifyTable, SeeksPoissonsRatioItselfAndInputsThatItDoesNotSeekStayUncert
       "\"material.density_kg_m3\" }]\nfit = [\"sag\", \"drift\"]\nmodel = \"fem_p1\"\ncells = [[4, 1, 1]]\n");
   EXPECT_FALSE(i.parameters.at(0).logarithmic);
   EXPECT_DOUBLE_EQ(i.parameters[0].start, 0.3);
-  EXPECT_EQ(i.inputs, std::vector<std::size_t>{0});  // the length; not the density, nor the law
-  EXPECT_EQ(read(modulus).inputs, (std::vector<std::size_t>{0, 1}));
+  ASSERT_EQ(i.inputs.size(), 2u);  // the length, and the density, which is sought; not the law
+  EXPECT_TRUE(i.inputs[0].sought.empty());
+  EXPECT_EQ(i.inputs[1].sought, std::vector<std::size_t>{1});
+  for (const OtherInput& input : read(modulus).inputs) EXPECT_TRUE(input.sought.empty());
   EXPECT_EQ(i.model, "fem_p1");
   EXPECT_EQ(i.cells, std::vector<Cells>{Cells({4, 1, 1})});
 }
