@@ -155,7 +155,8 @@ class MidpointRule {
   bool solve(Unknowns& x, double factor, const Viscous& viscous, const Unknowns* before, double inertia,
              const VectorXd& offset) {
     double last = std::numeric_limits<double>::infinity();
-    const double tolerance = before ? exact_tolerance : newton_tolerance;
+    const double tolerance = before ? exact_tolerance : newton_tolerance,
+                 rounding = std::numeric_limits<double>::epsilon() * rest_.lpNorm<Eigen::Infinity>();
     bool fresh = false;
     for (int k = 0; k < most_corrections; ++k) {
       Unknowns r;
@@ -174,7 +175,7 @@ class MidpointRule {
       x.p -= d.p;
       ++corrections_;
       largest_ = std::max(largest_, x.u.lpNorm<Eigen::Infinity>());
-      if (size <= tolerance * largest_) return true;
+      if (size <= std::max(tolerance * largest_, rounding)) return true;
       if (size > slow * last) {
         if (fresh && size > last) return false;
         needs_factors_ = true;

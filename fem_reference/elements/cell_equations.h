@@ -56,9 +56,9 @@ CellVector cell_residual(const CellLaw& law, const CellShape& shape, const CellV
                          CellTangent* tangent);
 
 /// The residual of an energy-momentum step from `before` to `after` = 2 middle - before, for the middle's F: with the
-/// mean of S over the straight line from C of `before` to that of `after` (Gauss' rule: exact to the eighth power of
-/// the change, or to round-off), whose work S : (C1 - C0)/2 is the change of the law's energy (Gonzalez 1996);
-/// pressures are means over the dilatation in the same way.  At small strain it is cell_residual() at the middle.
+/// mean of S over the straight line from C of `before` to that of `after` (Gauss, four points: exact to the eighth
+/// power of the change), whose work S : (C1 - C0)/2 is the change of the law's energy (Gonzalez 1996); pressures are
+/// means over the dilatation in the same way.  At small strain it is cell_residual() at the middle.
 CellVector step_residual(const CellLaw& law, const CellShape& shape, const CellVector& before, const CellVector& middle,
                          double& smallest);
 
