@@ -4,7 +4,6 @@
 #include "msm/distribution/model_part.h"
 #include "msm/dynamics/natural_modes.h"
 #include "msm/embedding/supports.h"
-#include "msm/exchange/springs_file.h"
 #include "msm/laws/capabilities.h"
 #include "msm/models.h"
 #include "msm/multigrid/cut/cut_levels.h"
@@ -360,9 +359,6 @@ TEST(SeveralMaterials, AreRefusedByWhatKnowsOne) {
   const MassSpringModel model = model_of(cut, {one, {2, 0.3, 1000}});
   EXPECT_FALSE(can(model, Capability::mass_average));
   EXPECT_THROW(part_of(model, std::vector<char>(model.network.nodes(), 1)), std::invalid_argument);
-  SpringsFile file;
-  file.model = model;
-  EXPECT_THROW(springs_as_json(file), std::invalid_argument);
   const Mesh cubes = voxelise(cut.grid, test::layered_block({length, 2, 2}, {4, 2, 2}, 0, 1.3)).mesh;
   EXPECT_THROW(build_embedded(test::model("hybmss"), cubes, one), InputError);
   EXPECT_THROW(model_of(cut, {one}), InputError);
