@@ -81,8 +81,8 @@ EmbeddedModel built_on(const PreparedCase& prepared, const Lattice& lattice, con
 }
 
 /// Or may take them.
-bool takes_explicit_steps(const MotionChoice& motion) {
-  return motion.integrator == "explicit" || motion.integrator == "auto";
+bool takes_explicit_steps(const std::optional<MotionChoice>& motion) {
+  return !motion || motion->integrator == "explicit" || motion->integrator == "auto";
 }
 
 }  // namespace
@@ -119,7 +119,7 @@ EmbeddedModel build_on(const PreparedCase& prepared, const Lattice& lattice, con
   EmbeddedModel built = built_on(prepared, lattice, parameters, held, material, in_motion);
   choose_axes(prepared.loads, built.embedding.held, built.model.network);
   attach_masses(prepared.experiment, *lattice.mesh, built);
-  if (in_motion && takes_explicit_steps(*prepared.experiment.dynamics)) soften_bonds(built.model, material.density);
+  if (in_motion && takes_explicit_steps(prepared.experiment.dynamics)) soften_bonds(built.model, material.density);
   if (in_motion && held.empty()) {  // in flight all nodes fall alike
     built.embedding.free_fall = true;
     if (!built.embedding.patches.empty()) built.embedding.volumes = built.model.network.volume;

@@ -33,10 +33,10 @@ TEST(RegionNotes, NothingIsSaidOfWhatIsResolved) {
 
 TEST(RegionNotes, SmallAndThinOnesAreNamedInCells) {
   const std::vector<MaterialRegion> small = {region("ball", PatchRule::Near{{0.5, 0.5, 0.5}, 0.1})},
-                                    sheet = {region("skin", PatchRule::Box{{0, 0, 0.5}, {1, 1, 0.52}})};
+                                    sheet = {region("skin", PatchRule::Box{{0.25, 0.25, 0.5}, {0.75, 0.75, 0.55}})};
   EXPECT_WORDS(said(region_notes(small, cube(small), 0.2)), "region 'ball' is about 0.9");
   EXPECT_WORDS(said(region_notes(small, cube(small), 0.2)), "30 to 80 % off");
-  EXPECT_WORDS(said(region_notes(sheet, cube(sheet), 0.1)), "region 'skin' is 0.19 cells thick");
+  EXPECT_WORDS(said(region_notes(sheet, cube(sheet), 0.2)), "region 'skin' is 0.21 cells thick");
 }
 
 TEST(RegionNotes, GapsBetweenRegionsAreNamedWithTheirShare) {
@@ -53,7 +53,7 @@ TEST(RegionNotes, WhatNoCellKeepsIsRefusedWithAnEdgeThatWould) {
     FAIL() << "accepted";
   } catch (const InputError& e) {
     EXPECT_WORDS(e.what(), "case.toml:7:1: region: 'ball', of ");
-    EXPECT_WORDS(e.what(), "(allowed: voxel_edge_m up to 0.009");
+    EXPECT_WORDS(e.what(), "(allowed: voxel_edge_m up to 0.01,");
   }
   require_resolved(small, cube(small), 0.02);
 }
