@@ -12,6 +12,7 @@ set(tested_ratios  # a regular expression of cases, their ratios
     "large_strain/(bending|shear)" 0.45
     "cross_check/.*" 0.25  # that of CalculiX' values
     "cost/bending" 0.25
+    "regions/stiff_balls" 0.49
     "motion/(released_bar|struck_bar.*)" 0.3
     "bodies/(rabbit|l_bracket)" 0.45)
 
