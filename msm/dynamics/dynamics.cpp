@@ -60,13 +60,11 @@ class MotionUnderLoads {
         options_(options),
         dt_(options.time_step.value()),
         motion_(make_motion(model, density, options)),
-        of_supports_(model.network, options),
-        explicit_(options.integrator == Integrator::explicit_euler),
         changing_(options.course.settled() > 0),
-        bc_(load_path(options.course.factor(0))) {
+        bc_(load_path(options.course.factor(0))),
+        of_supports_(model.network, options, bc_.prescribed) {
     result_.time_step = dt_;
     motion_->set_conditions(bc_);
-    if (BoundaryConditions start = bc_; explicit_) of_supports_.add(start);
     if (options.start.size() > 0 || options.velocity.size() > 0) {
       const NodalVectors x = options.start.size() > 0 ? options.start : model.network.X;
       motion_->set_state(x, velocity_before(model, density, x, bc_, options));
@@ -87,12 +85,16 @@ class MotionUnderLoads {
   }
 
  private:
+  bool is_explicit() const { return options_.integrator == Integrator::explicit_euler; }
+
+  /// Explicit methods take the loads of the beginning of a step, implicit ones those of its end; all take the supports
+  /// of its end.
   void set_conditions() {
     result_.time = result_.steps * dt_;
     if (!changing_) return;
-    const double end = static_cast<double>(result_.steps + 1) * dt_, time = explicit_ ? end - dt_ : end;
+    const double end = static_cast<double>(result_.steps + 1) * dt_, time = is_explicit() ? end - dt_ : end;
     BoundaryConditions at_end = load_path_(options_.course.factor(end)), of_step = at_end;
-    if (explicit_) of_step.external = bc_.external;  // of the positions that its forces are taken at
+    if (is_explicit()) of_step.external = bc_.external;
     of_supports_.add(of_step);
     motion_->set_conditions(of_step);
     bc_ = std::move(at_end);
@@ -120,7 +122,7 @@ class MotionUnderLoads {
 
   /// Contact with the plane at the end of a step.
   void touch() {
-    if (explicit_) {
+    if (is_explicit()) {
       NodalVectors x = motion_->positions(), v = motion_->velocities();
       if (options_.contact->correct(dt_, options_.damping, bc_.fixed, x, v)) motion_->set_state(x, v);
     }
@@ -169,10 +171,9 @@ class MotionUnderLoads {
   const DynamicsOptions& options_;
   double dt_;  ///< [s]
   std::unique_ptr<Motion> motion_;
-  SupportInertia of_supports_;
-  bool explicit_;  ///< takes the loads of the beginning of a step; all take the supports of its end
   bool changing_, at_rest_ = false;
   BoundaryConditions bc_;  ///< at the time of the positions
+  SupportInertia of_supports_;
   DynamicsResult result_;
 };
 

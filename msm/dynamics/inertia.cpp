@@ -41,8 +41,8 @@ MassAverage mass_average(const Network& network, double density, const MotionOpt
           (masses(network, density) + support_masses(network, options).col(0)) / density};
 }
 
-SupportInertia::SupportInertia(const Network& network, const MotionOptions& options)
-    : network_(network), dt_(options.time_step.value()), damping_(options.damping) {
+SupportInertia::SupportInertia(const Network& network, const MotionOptions& options, const NodalVectors& start)
+    : network_(network), dt_(options.time_step.value()), damping_(options.damping), here_(start), before_(start) {
   for_each_support_mass(network, options, [&](const Anchor& a, int n, int axis, double m) {
     shares_.push_back({a.corners[n], a.node, axis, m});
   });
@@ -50,7 +50,6 @@ SupportInertia::SupportInertia(const Network& network, const MotionOptions& opti
 
 void SupportInertia::add(BoundaryConditions& conditions) {
   if (!acts()) return;
-  if (here_.size() == 0) here_ = before_ = conditions.prescribed;
   const NodalVectors& next = conditions.prescribed;
   const NodalVectors speed = (next - here_) / dt_, acceleration = (speed - (here_ - before_) / dt_) / dt_;
   NodalVectors force = NodalVectors::Zero(network_.nodes(), 3);

@@ -33,7 +33,8 @@ class SupportInertia {
  public:
   /// @param network to which a reference is kept
   /// @param options with a time step, of which integrator, damping and mass_consistency are read
-  SupportInertia(const Network& network, const MotionOptions& options);
+  /// @param start displacements of the supports, which rest there [m], n x 3
+  SupportInertia(const Network& network, const MotionOptions& options, const NodalVectors& start);
 
   /// Whether there are support masses.
   bool acts() const { return !shares_.empty(); }
@@ -50,7 +51,7 @@ class SupportInertia {
   const Network& network_;
   double dt_, damping_;
   std::vector<Share> shares_;
-  NodalVectors here_, before_;  ///< displacements of the supports, empty before the first step [m]
+  NodalVectors here_, before_;  ///< displacements of the supports [m]
 };
 
 }  // namespace springproof

@@ -30,9 +30,8 @@ class MovingModel {
     const double density = model_->springs.density;
     options.time_step = dt_ = checked_time_step(model_->model(), density, options);
     motion_ = make_motion(model_->model(), density, options);
-    of_supports_.emplace(model_->network(), options);
     apply();
-    carry_supports();
+    of_supports_.emplace(model_->network(), options, conditions_.prescribed);
     const NodalVectors& X = model_->network().X;
     options.velocity = NodalVectors::Zero(X.rows(), 3);
     set_state(X, velocity_before(model_->model(), density, X, conditions_, options));
@@ -139,7 +138,7 @@ class MovingModel {
   double factor_, dt_ = 0;
   std::unique_ptr<Motion> motion_;
   std::optional<SupportInertia> of_supports_;
-  int moved_for_ = 1;  ///< steps for which the support masses still have forces to be set; 1: where they are at first
+  int moved_for_ = 0;  ///< steps for which the support masses still have forces to be set
   long steps_ = 0;
   mutable NodalVectors x_, v_, f_;
   mutable bool fresh_x_ = false, fresh_v_ = false, fresh_f_ = false;

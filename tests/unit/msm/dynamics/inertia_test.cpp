@@ -48,7 +48,7 @@ TEST(SupportMass, IsNoneOfLargeSteps) {
   const MassSpringModel model = held_bar(false);
   const MotionOptions options{.integrator = Integrator::energy_momentum, .time_step = 0.01};
   EXPECT_TRUE(support_masses(model.network, options).isZero(0));
-  EXPECT_FALSE(SupportInertia(model.network, options).acts());
+  EXPECT_FALSE(SupportInertia(model.network, options, NodalVectors::Zero(model.network.nodes(), 3)).acts());
 }
 
 // Steadily accelerated: mu (a + c v), v the velocity of the step to come.
@@ -58,7 +58,7 @@ TEST(SupportMass, MovesWithItsSupport) {
     const double dt = 0.01, damping = 3;
     const Vec3 acceleration(1, -2, 3);
     const MotionOptions options{.time_step = dt, .damping = damping};
-    SupportInertia inertia(model.network, options);
+    SupportInertia inertia(model.network, options, NodalVectors::Zero(model.network.nodes(), 3));
     const double mass = support_masses(model.network, options).col(0).sum();
     for (int step = 0; step < 5; ++step) {
       BoundaryConditions bc;
