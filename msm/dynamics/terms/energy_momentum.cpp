@@ -2,9 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
-#include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <stdexcept>
 
 #include "msm/laws/capabilities.h"
@@ -150,19 +148,12 @@ struct AddSecantForces {
   /// Quadratic in the positions; of bonds that turn in v, whose mean over the step has the slope of the mean positions.
   void operator()(const Anchors& law) const {
     const NodalVectors middle = (x0 + x1) / 2;
-    if (std::none_of(network.bonds.begin(), network.bonds.end(), turns)) return law.add_forces(network, middle, f);
-    Network others;
-    others.X = network.X;
-    others.anchors = network.anchors;
-    std::copy_if(network.bonds.begin(), network.bonds.end(), std::back_inserter(others.bonds),
-                 [](const InterfaceBond& b) { return !turns(b); });
-    law.add_forces(others, middle, f);
+    law.add_forces(network, middle, f);
     for (const InterfaceBond& b : network.bonds) {
       if (!turns(b)) continue;
       const Vec3 v = (TurnedBond(b, network.X, x0).v() + TurnedBond(b, network.X, x1).v()) / 2;
-      TurnedBond(b, network.X, middle).for_each_gradient(b.stiffness * v, [&](int node, const Vec3& g) {
-        f.row(node) -= g.transpose();
-      });
+      const TurnedBond at(b, network.X, middle);
+      at.for_each_gradient(b.stiffness * (v - at.v()), [&](int node, const Vec3& g) { f.row(node) -= g.transpose(); });
     }
   }
 
