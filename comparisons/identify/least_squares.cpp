@@ -79,12 +79,16 @@ LeastSquaresFit fit_of_free(const BoundedFit& p, const std::vector<bool>& held, 
 
 }  // namespace
 
+VectorXd beside(const BoundedFit& p, const VectorXd& at, Index i) {
+  VectorXd moved = at;
+  moved[i] = std::max(at[i] + (at[i] + p.step[i] <= p.upper[i] ? p.step[i] : -p.step[i]), p.lower[i]);
+  return moved;
+}
+
 std::optional<MatrixXd> jacobian_of(const BoundedFit& p, const VectorXd& at, const VectorXd& r) {
   MatrixXd J(r.size(), at.size());
   for (Index i = 0; i < at.size(); ++i) {
-    const double step = at[i] + p.step[i] <= p.upper[i] ? p.step[i] : -p.step[i];
-    VectorXd moved = at;
-    moved[i] = std::max(at[i] + step, p.lower[i]);
+    const VectorXd moved = beside(p, at, i);
     const std::optional<VectorXd> there = p.residuals(moved);
     if (!there) return {};
     J.col(i) = (*there - r) / (moved[i] - at[i]);

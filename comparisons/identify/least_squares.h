@@ -26,6 +26,9 @@ struct LeastSquaresFit {
   std::string message;  ///< why not
 };
 
+/// Parameters of which one is a step off, into the bounds.
+Eigen::VectorXd beside(const BoundedFit& problem, const Eigen::VectorXd& at, Eigen::Index parameter);
+
 /// Derivatives of the residuals by one-sided differences, into the bounds.
 /// @param at with residuals r
 /// @return empty: at one of the neighbours there are no residuals
