@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "comparisons/reference/reference_grids.h"
+#include "comparisons/reference/region_measures.h"
 #include "msm/laws/filled_volume.h"
 #include "msm/laws/turned_bond.h"
 

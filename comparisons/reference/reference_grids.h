@@ -67,14 +67,6 @@ Field sampled_field(const Lattice& lattice, const fem::Solution& s);
 /// Every scalar measure of one solution, stresses among them.
 std::map<std::string, double> measures_of(const PreparedCase& prepared, const fem::Solution& s);
 
-/// region.<region>.<quantity>, of the means over each region, of finite elements or springs; an energy of NaN is none.
-std::map<std::string, double> region_measures(const std::vector<MaterialRegion>& regions,
-                                              const std::vector<fem::RegionMeans>& means);
-
-/// interface.<region>.<other>.force of all that meet, of finite elements or springs.
-std::map<std::string, double> interface_measures(const std::vector<MaterialRegion>& regions,
-                                                 const std::vector<fem::InterfaceForce>& interfaces);
-
 /// The measures of a field that have a value of their own; `u` is the displacement at the measured points.
 std::map<std::string, double> field_measures(const PreparedCase& prepared, const Field& field, const NodalVectors& u);
 
