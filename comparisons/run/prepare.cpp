@@ -257,11 +257,12 @@ void check_masses(const Experiment& e, const Mesh& mesh) {
 void check_region_models(const PreparedCase& prepared) {
   const Experiment& e = prepared.experiment;
   if (e.regions.empty()) return;
+  const bool measures_regions = std::any_of(e.measures.begin(), e.measures.end(),
+                                            [](const auto& m) { return m == "region" || m == "interface"; });
   for (std::size_t m = 0; m < prepared.models.size(); ++m) {
     const ModelParameters& p = prepared.models[m];
     const bool can = *p.cut && !p.springs && p.has(Extension::averaging) && e.body.accuracies.empty();
-    const auto of_regions = [](const std::string& measure) { return measure == "region" || measure == "interface"; };
-    if (*p.coarsened && std::any_of(e.measures.begin(), e.measures.end(), of_regions))
+    if (*p.coarsened && measures_regions)
       throw InputError(e.models[m].where,
                        fmt::format("compare.models: {}: coarsened = true: a measured cell is of no region (allowed: "
                                    "without the measures region and interface)",

@@ -43,7 +43,7 @@ struct LawResponse {
 /// Response at deformation gradient F (det F > 0) and pressure p [Pa]; mu is the shear modulus [Pa].
 LawResponse respond(Law law, double mu, double p, const Matrix3& F);
 
-/// Its stress alone [Pa], at C = F^T F: a quarter of the work.
+/// Its stress alone [Pa], at C = F^T F.
 Voigt stress(Law law, double mu, double p, const Eigen::Matrix3d& C);
 
 /// The dilatation g = J - 1, or tr E for St. Venant-Kirchhoff.

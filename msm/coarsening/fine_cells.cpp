@@ -92,7 +92,7 @@ class MeanModulus {
 
 }  // namespace
 
-AveragedSprings mean_springs(const FineCells& fine, int cell, const AveragedSprings& law) {
+AveragedSprings springs_in_cell(const FineCells& fine, int cell, const AveragedSprings& law) {
   if (law.regions.empty()) return law;
   const std::vector<double> shares = shares_of_materials(fine, cell, law.regions.size() + 1);
   AveragedSprings mean = law;

@@ -48,6 +48,6 @@ std::vector<double> shares_of_materials(const FineCells& fine, int cell, std::si
 /// @param cell of the coarse lattice
 /// @param law of the materials
 /// @return springs of one material
-AveragedSprings mean_springs(const FineCells& fine, int cell, const AveragedSprings& law);
+AveragedSprings springs_in_cell(const FineCells& fine, int cell, const AveragedSprings& law);
 
 }  // namespace springproof

@@ -92,7 +92,7 @@ double bulk_modulus(const AveragedSprings& law, const FineCells& fine, int cell)
 
 /// The form of a cell of averaged springs, of several materials by their mean.
 DeformationForm averaged_form(const MeasuredIn& in, int cell) {
-  return form_of(mean_springs(in.fine, cell, in.law), {in.coarse.grid.edge, in.coarse.cells[cell].filled});
+  return form_of(springs_in_cell(in.fine, cell, in.law), {in.coarse.grid.edge, in.coarse.cells[cell].filled});
 }
 
 ForceLaw averaged_cells(const MeasuredIn& in) {

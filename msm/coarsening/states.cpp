@@ -128,7 +128,7 @@ void stiffen_anchors(const CutBody& body, const std::vector<std::string>& held, 
   auto anchor = network.anchors.begin();
   for (const std::string& name : held)
     for (const PatchInCell& part : body.patches.at(name)) {
-      const double there = materials_of(mean_springs(fine, part.cell, law)).front().youngs_modulus;
+      const double there = materials_of(springs_in_cell(fine, part.cell, law)).front().youngs_modulus;
       for (std::size_t q = 0; q < anchors_of_part; ++q) (anchor++)->stiffness *= there / own;
     }
 }

@@ -30,6 +30,27 @@ on = "z_min"
 displacement_m = [0, 0, 0]
 )";
 
+/// The beginning of a case of a bar that hangs from its end; it has no [compare].
+inline constexpr const char* heavy_bar = R"(
+[body]
+geo = "block.geo"
+size_m = [0.1, 0.03, 0.03]
+cells = [10, 3, 3]
+
+[material]
+youngs_modulus_Pa = 2.5e5
+poisson_ratio = 0.49
+density_kg_m3 = 1070
+
+[[load]]
+on = "x_min"
+displacement_m = [0, 0, 0]
+
+[[load]]
+gravity_m_s2 = [0, 0, -9.81]
+
+)";
+
 /// Every key of a body of hexahedra.
 inline constexpr const char* full_case = R"(cite = "Golec et al. (2019), \"Table 3\""
 what = "A beam with everything done to it."

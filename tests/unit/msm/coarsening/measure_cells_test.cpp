@@ -225,7 +225,7 @@ TEST(MeasuredCells, HaveTheHarmonicMeanOfBulkModuliOfSeveralMaterials) {
   const CellSet cells = cut_lattice(of.coarse, {}, 1).cells;
   MeasuredCells measured;
   for (std::size_t c = 0; c < cells.size(); ++c)
-    measured.add_form(form_of(mean_springs(of.fine, static_cast<int>(c), soft), cells.shape(c)));
+    measured.add_form(form_of(springs_in_cell(of.fine, static_cast<int>(c), soft), cells.shape(c)));
   const MeasuredCells scaled = in_material(measured, cells, soft, stiff, &of.fine);
   for (std::size_t c = 0; c < cells.size(); ++c)
     EXPECT_LE((scaled.form_of_cell(c) - 3 * measured.form_of_cell(c)).norm(), 1e-9 * scaled.form_of_cell(c).norm());

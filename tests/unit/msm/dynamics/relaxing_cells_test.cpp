@@ -230,7 +230,9 @@ TEST(RelaxingCells, AStepOfImplicitEulerEndsWithTheForcesOfItsEnd) {
     ASSERT_EQ(motion->failure(), "");
     const NodalVectors x = motion->positions(), branches = forces_of(beside, x, dt), f = forces(model, x) + branches;
     EXPECT_LT((mass.asDiagonal() * (motion->velocities() - v) / dt - f).norm(), 1e-6 * f.norm()) << step;
-    if (step == 1) EXPECT_GT(branches.norm(), 1e-3 * f.norm());
+    if (step == 1) {
+      EXPECT_GT(branches.norm(), 1e-3 * f.norm());
+    }
     beside.advance(x, dt);
     v = motion->velocities();
   }

@@ -10,25 +10,7 @@ namespace {
 
 using test::message_of;
 
-constexpr const char* bar = R"(
-[body]
-geo = "block.geo"
-size_m = [0.1, 0.03, 0.03]
-cells = [10, 3, 3]
-
-[material]
-youngs_modulus_Pa = 2.5e5
-poisson_ratio = 0.49
-density_kg_m3 = 1070
-
-[[load]]
-on = "x_min"
-displacement_m = [0, 0, 0]
-
-[[load]]
-gravity_m_s2 = [0, 0, -9.81]
-
-[[mass]]
+const std::string bar = test::heavy_bar + std::string(R"([[mass]]
 name = "weight"
 at_m = [0.1, 0.015, 0.03]
 mass_kg = 0.052
@@ -80,7 +62,7 @@ measure = "measured.more"
 source = "measured"
 value = 0
 within = 2
-)";
+)");
 
 /// The bar with one text in place of another.
 std::string edited(const std::string& from, const std::string& to) {

@@ -12,25 +12,7 @@ namespace {
 
 using test::message_of;
 
-constexpr const char* bar = R"(
-[body]
-geo = "block.geo"
-size_m = [0.1, 0.03, 0.03]
-cells = [10, 3, 3]
-
-[material]
-youngs_modulus_Pa = 2.5e5
-poisson_ratio = 0.49
-density_kg_m3 = 1070
-
-[[load]]
-on = "x_min"
-displacement_m = [0, 0, 0]
-
-[[load]]
-gravity_m_s2 = [0, 0, -9.81]
-
-[[probe]]
+const std::string bar = test::heavy_bar + std::string(R"([[probe]]
 name = "tip"
 at_m = [0.1, 0.015, 0.015]
 
@@ -58,7 +40,7 @@ values = [
   { name = "sag", quantity = "displacement.tip.z", value = -0.0108, u = 3e-4 },
   { name = "drift", quantity = "displacement.tip.x", value = -0.001, u = 3e-4 },
 ]
-)";
+)");
 
 std::string with(const std::string& table) { return std::string(bar) + "[[identify]]\nname = \"modulus\"\n" + table; }
 
