@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Draws the figures of README and docs anew, from results that it keeps in a folder and computes where there are none: empty the
 # folder after a change of the numbers.
-#   docs/scripts/figures.sh [FOLDER]           FOLDER (default build/figures): golec_2019, rabbit, cost; without any an hour on two cores
+#   docs/scripts/figures.sh [FOLDER]           FOLDER (default build/figures): golec_2019, rabbit, cost, rabbit_measured; without any an hour on two cores
 #   docs/scripts/figures.sh points FILE...     the points of error-against-poisson-ratio, from the results.csv of its cases
 # Needs build/release/springproof and Chromium, no display.
 set -euo pipefail
@@ -50,7 +50,9 @@ mkdir -p "$folder"
 results golec_2019 golec_2019
 results rabbit bodies/rabbit --poisson-ratio 0.4
 results cost cost
+results rabbit_measured cost/rabbit_measured
 draw golec_2019 error-against-poisson-ratio error-against-poisson-ratio
 draw rabbit shapes-displacement-smooth-nu0.4 rabbit
 draw cost error-against-time error-against-cost
+draw rabbit_measured error-against-unknowns error-against-unknowns
 points "$folder/golec_2019/results.csv" >"$repository/docs/pictures/error-against-poisson-ratio.csv"

@@ -53,7 +53,8 @@ function costToReach(line, level) {
 
 const panelHeight = 236, panelGap = 14, costMargins = {left: 62, right: 8, top: 28, bottom: 46, legend: 58};
 const panelTitle = ({result, measure, nu}) => `${result.name}, ${shortNames[measure]}, ν = ${nuText(nu)}`;
-const costModels = () => models.filter(model => costCases.some(c => c.models.includes(model)));
+const costModels = () => models.filter(model =>
+  costRows.some(row => costNus().some(nu => costPoints(row, nu, costs.unknowns).some(point => point.model === model))));
 const costNus = () => distinct(costCases.flatMap(c => c.nus)).sort((a, b) => a - b);
 
 /// One box per case and Poisson's ratio, with the axes that all share in x, and each row in y.
