@@ -157,8 +157,8 @@ void CutMixedMultigrid::Level::set_up_patches() {
   for (std::vector<int>& points : lattice.anchored_points()) {
     const auto is_inside = [&](int i) { return std::binary_search(points.begin(), points.end(), i); };
     std::set<int> cells;
-    for (const int p : points)
-      for (const int c : cells_at[p])
+    for (const int point : points)
+      for (const int c : cells_at[point])
         if (std::all_of(points_of[c].begin(), points_of[c].end(), is_inside)) cells.insert(c);
     for (const int c : cells) inverse_schur_[c] = 0;
     patches_.push_back(patch_of(std::move(points), {cells.begin(), cells.end()}, carriers));

@@ -3,7 +3,9 @@
 
 #include "msm/distribution/model_part.h"
 #include "msm/dynamics/natural_modes.h"
+#include "msm/dynamics/time_step.h"
 #include "msm/embedding/supports.h"
+#include "msm/exchange/springs_document.h"
 #include "msm/laws/capabilities.h"
 #include "msm/models.h"
 #include "msm/multigrid/cut/cut_levels.h"
@@ -409,9 +411,134 @@ TEST(SeveralMaterials, AreRefusedByWhatKnowsOne) {
   const MassSpringModel model = model_of(cut, {one, {2, 0.3, 1000}});
   EXPECT_FALSE(can(model, Capability::mass_average));
   EXPECT_THROW(part_of(model, std::vector<char>(model.network.nodes(), 1)), std::invalid_argument);
-  const Mesh cubes = voxelise(cut.grid, test::layered_block({length, 2, 2}, {4, 2, 2}, 0, 1.3)).mesh;
-  EXPECT_THROW(build_embedded(test::model("hybmss"), cubes, one), InputError);
   EXPECT_THROW(model_of(cut, {one}), InputError);
+}
+
+/// A block of cubes of edge 1/2, material 1 above `at` along an axis.
+Mesh layered_cubes(int axis, double at) {
+  Mesh cubes = block_mesh({length, 2, 2}, {8, 4, 4});
+  for (const Hexahedron& cube : cubes.hexahedra)
+    cubes.materials.push_back((cubes.nodes(cube[0], axis) + cubes.nodes(cube[6], axis)) / 2 > at);
+  return cubes;
+}
+
+MassSpringModel whole_cubes(const std::string& model, const Mesh& cubes, const IsotropicMaterial& own,
+                            const IsotropicMaterial& other) {
+  return build_embedded(test::model(model), cubes, own, nullptr, {other}).model;
+}
+
+/// Poisson's ratios of a model in two materials: of springs alone 1/4.
+std::array<double, 2> ratios_of(const std::string& model) {
+  return own_poisson_ratio(test::model(model).row) ? std::array{0.25, 0.25} : std::array{0.3, 0.45};
+}
+
+const char* const of_whole_cubes[] = {"msm_18", "hybmss_cf", "hybmss", "hybmss_b", "hybmss_bt", "hybmss_avg"};
+
+TEST(SeveralMaterials, InWholeCubesAreExactInSeries) {
+  for (const std::string model : of_whole_cubes)
+    for (const double contrast : {1e-4, 50.0}) {
+      const auto [nu_a, nu_b] = ratios_of(model);
+      const IsotropicMaterial a{1, nu_a, 1}, b{contrast, nu_b, 1};
+      const double force = force_of_bar(whole_cubes(model, layered_cubes(0, 1.5), a, b), true),
+                   expected = 4 * pull / (1.5 / confined_modulus(a) + 2.5 / confined_modulus(b));
+      EXPECT_NEAR(force, expected, 1e-10 * expected) << model << ' ' << contrast;
+    }
+}
+
+TEST(SeveralMaterials, InWholeCubesAreExactInParallel) {
+  for (const std::string model : of_whole_cubes)
+    for (const double contrast : {1e-3, 50.0}) {
+      const double nu = ratios_of(model)[0],
+                   force =
+                       force_of_bar(whole_cubes(model, layered_cubes(2, 0.5), {1, nu, 1}, {contrast, nu, 1}), false),
+                   expected = 2 * (0.5 + 1.5 * contrast) * pull / length;
+      EXPECT_NEAR(force, expected, 1e-10 * expected) << model << ' ' << contrast;
+    }
+}
+
+// Cubes of the majority's material, four across a ball: a third off in its stress, rms over places in the lattice.
+TEST(SeveralMaterials, InWholeCubesAreOffByTheStepsOfTheInterface) {
+  const VoxelGrid grid{Vec3::Constant(-2), 0.5, {8, 8, 8}};
+  const std::vector<Vec3> centres = {{0.11, 0.05, -0.17}, {0.2, -0.1, 0.02}, {-0.05, 0.22, 0.13}, {0, 0, 0}};
+  for (const auto& [far, expected] : {std::pair(tension, 0.32), std::pair(pressure, 0.19)}) {
+    const test::BallInSpace exact{{1, 0.3, 1}, {10, 0.3, 1}, far};
+    double squares = 0;
+    for (const Vec3& centre : centres) {
+      const Mesh cubes = voxelise(grid, test::ball_in_cube(8, centre)).mesh;
+      const Ball ball{exact, 4, centre, whole_cubes("hybmss_avg", cubes, exact.around, exact.inside)};
+      squares += std::pow(ball.stress_error(ball.solve(LinearSolver::cholesky)), 2) / 4;
+    }
+    EXPECT_NEAR(std::sqrt(squares), expected, 0.3 * expected) << far(2, 2);
+  }
+}
+
+TEST(SeveralMaterials, InWholeCubesHaveTheForcesOfTheirEnergy) {
+  for (const std::string model : {"hybmss", "hybmss_bt", "hybmss_avg"}) {
+    const MassSpringModel of_two = whole_cubes(model, layered_cubes(0, 1.5), {1, 0.2, 1}, {20, 0.4, 1});
+    const Network& network = of_two.network;
+    const NodalVectors x = network.X + test::noise(network.nodes(), 0.05, 1), d = test::noise(network.nodes(), 1, 2);
+    const double h = 1e-5, slope = (energy(of_two, x + h * d) - energy(of_two, x - h * d)) / (2 * h),
+                 expected = -forces(of_two, x).cwiseProduct(d).sum();
+    EXPECT_NEAR(slope, expected, test::finite_difference * std::abs(expected)) << model;
+    Eigen::VectorXd Kd;
+    tangent(of_two, x).multiply(flat(d), Kd);
+    const Eigen::VectorXd change = flat(forces(of_two, x - h * d) - forces(of_two, x + h * d)) / (2 * h);
+    EXPECT_LE((Kd - change).norm(), test::finite_difference * Kd.norm()) << model;
+  }
+}
+
+// The stiff and light layer has the fastest modes.
+TEST(SeveralMaterials, InWholeCubesHaveASafeStep) {
+  for (const std::string model : {"hybmss_cf", "hybmss", "hybmss_bt", "hybmss_avg"}) {
+    const double nu = ratios_of(model)[0];
+    const MassSpringModel of_two = whole_cubes(model, layered_cubes(0, 1.5), {1, nu, 3}, {100, nu, 1});
+    const Network& network = of_two.network;
+    const Eigen::VectorXd mass = masses(network, 3);
+    Eigen::VectorXd v = flat(test::noise(network.nodes(), 1, 1)), Kv;
+    const Tangent K = tangent(of_two, network.X);
+    double square = 0;  // of the largest frequency, by power iteration
+    for (int i = 0; i < 400; ++i) {
+      K.multiply(v, Kv);
+      for (Eigen::Index n = 0; n < v.size(); ++n) Kv[n] /= mass[n / 3];
+      square = Kv.norm() / v.norm();
+      v = Kv / Kv.norm();
+    }
+    const double step = safe_time_step(of_two, 3), largest = 2 / std::sqrt(square);
+    EXPECT_LE(step, 1.001 * largest) << model;
+    EXPECT_GE(step, 0.3 * largest) << model;
+  }
+}
+
+TEST(SeveralMaterials, InWholeCubesWeighByTheirDensities) {
+  const Mesh cubes = layered_cubes(0, 1.5);
+  const EmbeddedModel built = build_embedded(test::model("hybmss"), cubes, {1, 0.3, 1000}, nullptr, {{1, 0.3, 3000}});
+  EXPECT_NEAR(masses(built.model.network, 1000).sum(), 4 * (1.5 * 1000 + 2.5 * 3000), 1e-8);
+  const NodalVectors weight =
+      transfer({Gravity{Vec3(0, 0, -10)}}, cubes, built.embedding, built.model.network, 1000, Kinematics::linear)
+          .external;
+  double lower = 0;
+  for (int n = 0; n < built.model.network.nodes(); ++n)
+    if (built.model.network.X(n, 0) < 1.5 - 1e-9) lower += weight(n, 2);
+  EXPECT_NEAR(weight.col(2).sum(), -40 * (1.5 * 1000 + 2.5 * 3000), 1e-6);
+  EXPECT_NEAR(lower, -40 * 1.25 * 1000, 1e-6);  // but half of the cubes at the interface
+}
+
+TEST(SeveralMaterials, InWholeCubesAreRefusedByWhatKnowsOne) {
+  const Mesh cubes = layered_cubes(0, 1.5);
+  const IsotropicMaterial one{1, 0.25, 1000}, other{2, 0.25, 1000};
+  for (const std::string model : {"emsm", "msm_centred", "msm_random", "emsm_random"})
+    EXPECT_THROW(whole_cubes(model, cubes, one, other), InputError) << model;
+  EXPECT_THROW(build_embedded(test::model("hybmss"), cubes, one), InputError);
+  Mesh of_three = cubes;
+  of_three.materials.front() = 2;
+  EXPECT_THROW(whole_cubes("hybmss", of_three, one, other), InputError);
+  const MassSpringModel model = whole_cubes("hybmss", cubes, one, other);
+  for (const Capability what :
+       {Capability::lattice_kernels, Capability::gpu, Capability::equal_cells, Capability::viscosity})
+    EXPECT_FALSE(can(model, what)) << name_of(what);
+  SpringsFile file;
+  file.model = model;
+  EXPECT_THROW(document_of(file), std::invalid_argument);
 }
 
 TEST(SeveralMaterials, HaveTheirOwnDensities) {
