@@ -262,10 +262,10 @@ void check_region_models(const PreparedCase& prepared) {
   for (std::size_t m = 0; m < prepared.models.size(); ++m) {
     const ModelParameters& p = prepared.models[m];
     const bool can = has_cut_cells(p.row) && !p.springs && e.body.accuracies.empty();
-    if (measures_regions && can && !p.has(Extension::averaging))
+    if (measures_regions && can && !*p.cut && !p.has(Extension::averaging))
       throw InputError(e.models[m].where,
                        fmt::format("compare.models: {}: the measures region and interface are of averaged springs "
-                                   "(allowed: hybmss_avg, or other measures)",
+                                   "(allowed: hybmss_avg, cut cells, or other measures)",
                                    e.models[m].label));
     if (*p.coarsened && measures_regions)
       throw InputError(e.models[m].where,
