@@ -33,7 +33,7 @@ def test_they_move_as_compare_says(name, options):
     state = model.solve([sp.Displacement("low"), sp.Force("high", (0, 0.01, 0.02))])
     if not sp.find_program():
         pytest.skip("no program springproof")
-    choice = {"name": name, "label": "mine", "cut": "cut" in options}
+    choice = {"model": name, "label": "mine", "cut": "cut" in options}
     compared = sp.compare(CASE | {"compare": CASE["compare"] | {"models": [choice]}})
     rows = {row["measure"]: row["value"] for row in compared if row["model"] == "mine"}
     wanted = [rows[f"displacement.P.{axis}"] for axis in "xyz"]
