@@ -133,6 +133,41 @@ NodalVectors fit_in_body(const Mesh& mesh, const Region* region, double shear_mo
   return shares.area;
 }
 
+/// Adds the laws of another material to those of the body's own, which are of the same kinds.
+void add_region(const std::vector<ForceLaw>& of_region, std::vector<ForceLaw>& laws) {
+  for (std::size_t i = 0; i < laws.size(); ++i)
+    std::visit(
+        [&](auto& law) {
+          if constexpr (requires { law.regions; })
+            law.regions.push_back(std::get<std::decay_t<decltype(law)>>(of_region[i]));
+        },
+        laws[i]);
+}
+
+/// Gives the cells of a calibrated lattice of material 0 the materials of the mesh's.
+void add_materials(const ModelParameters& p, const Mesh& mesh, const std::vector<IsotropicMaterial>& materials,
+                   MassSpringModel& model) {
+  Network& network = model.network;
+  network.cells.materials = mesh.materials;
+  const double own = bulk_calibration(p, materials[0]).spring_shear_modulus;
+  std::vector<double> stiffness;  // of a cell's springs over those of the body's own material
+  for (const IsotropicMaterial& m : materials) {
+    const BulkCalibration calibration = bulk_calibration(p, m);
+    network.cells.relative_densities.push_back(m.density / materials[0].density);
+    if (!stiffness.empty()) add_region(laws_of(p, network, m, calibration, {}), model.laws);
+    stiffness.push_back(calibration.spring_shear_modulus / own);
+  }
+  if (!network.springs.empty()) network.springs = superposed(network, stiffness);
+}
+
+/// @throws std::invalid_argument if the mesh has materials that are not given, or the model takes none.
+void require_materials(const ModelRow& row, const Mesh& mesh, std::size_t others) {
+  if (others == 0 || !has_cut_cells(row)) return require_one_material(mesh);
+  for (const int m : mesh.materials)
+    if (m > static_cast<int>(others))
+      throw std::invalid_argument(fmt::format("a cell is of material {}; {} are given beside the body's", m, others));
+}
+
 }  // namespace
 
 double grip_of(const ModelParameters& p, const Mesh& mesh) {
@@ -160,8 +195,8 @@ void require_material(const ModelParameters& p, const IsotropicMaterial& m) {
 }
 
 EmbeddedModel build_embedded(const ModelParameters& p, const Mesh& mesh, const IsotropicMaterial& material,
-                             const Region* region) try {
-  require_one_material(mesh);
+                             const Region* region, const std::vector<IsotropicMaterial>& others) try {
+  require_materials(p.row, mesh, others.size());
   if (p.springs) return build_from_file(p, mesh, material, region);
   if (passes_patch_test(p.row) && !region && !mesh.tetrahedra.empty())
     return build_on_vertices(p, mesh, material, fitted_on_vertices(p, mesh));
@@ -183,6 +218,11 @@ EmbeddedModel build_embedded(const ModelParameters& p, const Mesh& mesh, const I
   }
   laws = laws_of(p, network, material, calibration, gradient);
   small_displacements_only = !can(p.row, Capability::large_displacements) || p.shift > 0;
+  if (!others.empty() && !mesh.materials.empty()) {
+    std::vector<IsotropicMaterial> materials = {material};
+    materials.insert(materials.end(), others.begin(), others.end());
+    add_materials(p, mesh, materials, built.model);
+  }
   return built;
 } catch (const std::invalid_argument& e) {
   throw InputError(fmt::format("{}: {}", p.row.name, e.what()));

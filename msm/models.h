@@ -20,13 +20,16 @@ struct EmbeddedModel {
 /// @param mesh of the body; lattices of cells need one of equal cubes (block_mesh(), voxelise())
 /// @param material of the body
 /// @param region the true body, for disordered networks; nullptr: the cells of the mesh
+/// @param others materials 1, 2, ... of the mesh's cells: whole cells of one material each, whose springs add up where
+///   they share them; for has_cut_cells(parameters.row)
 /// @return the model and how the mesh hangs in it
 /// @throws InputError if the mesh or the material does not suit the model; std::runtime_error if the network cannot
 ///   have the material's moduli.
 EmbeddedModel build_embedded(const ModelParameters& parameters, const Mesh& mesh, const IsotropicMaterial& material,
-                             const Region* region = nullptr);
+                             const Region* region = nullptr, const std::vector<IsotropicMaterial>& others = {});
 
-/// Whether a model can be built of cut cells: lattices of cells, but for momentum dispersion, which needs springs.
+/// Whether a model can be built of cut cells, or of whole cells of several materials: lattices of cells, but for
+/// momentum dispersion, which needs springs and couples nodes beyond a cell.
 /// @param row of the table of models
 /// @return true: build_cut() takes it
 bool has_cut_cells(const ModelRow& row);

@@ -37,12 +37,17 @@ void require_springs_alone(const SpringsFile& springs) {
                     "volume constraints are of single tetrahedra, which lock (allowed: {})",
                     springs.origin.model, fmt::join(able, ", ")));
   }
-  if (!same_poisson_ratio(springs.material->poisson_ratio, 0.25))
-    throw InputError(
-        fmt::format("--poisson-ratio: is {:g}, and springs alone, all that Jolt has, are a solid of 1/4 "
-                    "(allowed: 0.25; for others --to bullet or mujoco, or --to springs for code of one's "
-                    "own)",
-                    springs.material->poisson_ratio));
+  const auto require_quarter = [](const std::string& what, double ratio) {
+    if (!same_poisson_ratio(ratio, 0.25))
+      throw InputError(
+          fmt::format("{}: is {:g}, and springs alone, all that Jolt has, are a solid of 1/4 "
+                      "(allowed: 0.25; for others --to bullet or mujoco, or --to springs for code of one's "
+                      "own)",
+                      what, ratio));
+  };
+  require_quarter("--poisson-ratio", springs.material->poisson_ratio);
+  for (const SpringsRegion& region : springs.regions)
+    require_quarter(fmt::format("region: '{}': poisson_ratio", region.name), region.material.poisson_ratio);
 }
 
 /// A document whose arrays are added by name.

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "comparisons/live/live_body.h"
+#include "meshes/materials.h"
 #include "meshes/volume.h"
 #include "msm/dynamics/time_step.h"
 #include "msm/parameters/calibrate.h"
@@ -34,6 +35,7 @@ ModelParameters parameters_of(const std::string& name) {
 
 /// The model of the table on the cubes of a mesh, by the same functions as build_embedded().
 MassSpringModel model_of(const Mesh& mesh, const std::string& name, const IsotropicMaterial& material) {
+  require_one_material(mesh);
   ModelParameters p = parameters_of(name);
   MassSpringModel model;
   model.network = cubic_lattice(mesh, p.has(Extension::averaging) ? CubicPattern{} : isotropic_pattern(p.face_to_cube));

@@ -75,9 +75,10 @@ EmbeddedModel built_on(const PreparedCase& prepared, const Lattice& lattice, con
   }
   if (passes_patch_test(parameters.row) && lattice.tetrahedra)
     return build_on_tetrahedra(lattice, parameters, material);
-  if (!parameters.cut.value_or(false)) return build_embedded(parameters, *lattice.mesh, material, lattice.region.get());
-  return build_cut_on(lattice, parameters, {held.begin(), held.end()}, material,
-                      materials_of(prepared.experiment.regions));
+  const std::vector<IsotropicMaterial> regions = materials_of(prepared.experiment.regions);
+  if (!parameters.cut.value_or(false))
+    return build_embedded(parameters, *lattice.mesh, material, lattice.region.get(), regions);
+  return build_cut_on(lattice, parameters, {held.begin(), held.end()}, material, regions);
 }
 
 /// Or may take them.

@@ -261,7 +261,12 @@ void check_region_models(const PreparedCase& prepared) {
                                             [](const auto& m) { return m == "region" || m == "interface"; });
   for (std::size_t m = 0; m < prepared.models.size(); ++m) {
     const ModelParameters& p = prepared.models[m];
-    const bool can = *p.cut && !p.springs && p.has(Extension::averaging) && e.body.accuracies.empty();
+    const bool can = has_cut_cells(p.row) && !p.springs && e.body.accuracies.empty();
+    if (measures_regions && can && !*p.cut && !p.has(Extension::averaging))
+      throw InputError(e.models[m].where,
+                       fmt::format("compare.models: {}: the measures region and interface are of averaged springs "
+                                   "(allowed: hybmss_avg, cut cells, or other measures)",
+                                   e.models[m].label));
     if (*p.coarsened && measures_regions)
       throw InputError(e.models[m].where,
                        fmt::format("compare.models: {}: coarsened = true: a measured cell is of no region (allowed: "
@@ -276,8 +281,8 @@ void check_region_models(const PreparedCase& prepared) {
     if (is_external(e.models[m]) || can) continue;
     throw InputError(
         e.models[m].where,
-        fmt::format("compare.models: {} is of one material in a body (allowed beside [[region]]: hybmss_avg in "
-                    "cut cells of one size; or models = [])",
+        fmt::format("compare.models: {} is of one material in a body (allowed beside [[region]]: lattices of cells of "
+                    "one size without momentum dispersion, as hybmss_avg; or models = [])",
                     e.models[m].label));
   }
 }

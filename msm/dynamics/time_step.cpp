@@ -87,6 +87,7 @@ Eigen::VectorXd checked_masses(const Network& network, double density) {
 
 /// Whether the springs and the laws of cells make the same stiffness in every cell.
 bool has_whole_cells(const MassSpringModel& model) {
+  if (!model.network.cells.materials.empty()) return false;
   bool of_cells = false;
   for (const ForceLaw& law : model.laws) {
     if (traits(law).reach != Reach::cells) continue;

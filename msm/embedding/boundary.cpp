@@ -182,6 +182,14 @@ std::optional<NodalVectors> true_forces(const Load& load, const Embedding& e, co
   return force;
 }
 
+/// Gravity on the masses of the nodes [N]; with `wrench_factor` times the wrench of the true body, if that is known.
+NodalVectors weight_of(const Gravity& load, const Network& network, double density, double wrench_factor) {
+  const Eigen::VectorXd volumes = volumes_by_mass(network);
+  NodalVectors force = density * volumes * load.acceleration.transpose();
+  if (wrench_factor != 0 && load.wrench) complete(*load.wrench, wrench_factor, network.X, volumes, force);
+  return force;
+}
+
 /// Forces on the nodes of a network [N].
 NodalVectors network_forces(const std::vector<Load>& loads, const Mesh& mesh, const Embedding& e,
                             const Network& network, double density, double factor) {
@@ -189,8 +197,9 @@ NodalVectors network_forces(const std::vector<Load>& loads, const Mesh& mesh, co
   std::vector<Load> on_mesh;
   for (const Load& load : loads) {
     const auto* gravity = std::get_if<Gravity>(&load);
-    if (gravity && e.free_fall)
-      external += factor * density * volumes_by_mass(network) * gravity->acceleration.transpose();
+    const bool of_densities = e.patches.empty() && !network.cells.relative_densities.empty();
+    if (gravity && (e.free_fall || of_densities))
+      external += weight_of(*gravity, network, factor * density, e.free_fall ? 0 : factor);
     else if (const auto forces = e.patches.empty() ? std::nullopt : true_forces(load, e, network.X, density, factor))
       external += *forces;
     else

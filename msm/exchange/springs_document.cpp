@@ -326,6 +326,9 @@ NodalVectors check_positions(const NodalVectors& X) {
 SpringsDocument document_of(const SpringsFile& springs) {
   DocumentWriter out;
   const Network& network = springs.model.network;
+  if (!network.cells.materials.empty() && !network.cells.cut())
+    throw std::invalid_argument(
+        "a springs file of several materials is of cut cells (allowed: these, or one material)");
   out.document.head = {{"format", springs_format}, {"version", version_of(network.cells)}};
   out.at({"origin"}) = origin_json(springs.origin);
   if (springs.material) out.at({"material"}) = moduli_json(*springs.material);

@@ -352,4 +352,15 @@ void AveragedSprings::add_tangent(const Network& network, const NodalVectors& x,
         });
 }
 
+MixedParts mixed_parts(const AveragedSprings& law) {
+  MixedParts parts{law, {}};
+  const auto take = [&](AveragedSprings& of) {
+    parts.kappa.push_back(std::max(0.0, of.lame_lambda - of.shear_modulus));
+    if (parts.kappa.back() > 0) of.lame_lambda = of.shear_modulus;
+  };
+  take(parts.springs);
+  for (AveragedSprings& of : parts.springs.regions) take(of);
+  return parts;
+}
+
 }  // namespace springproof

@@ -96,6 +96,14 @@ struct AveragedSprings {
   Eigen::Matrix<double, 24, 24> cell_matrix(const CellShape& cell) const;
 };
 
+/// Averaged springs in mixed form: what is left of them where pressures hold the volumes of cells.
+struct MixedParts {
+  AveragedSprings springs;    ///< without volume terms in cells that have a pressure
+  std::vector<double> kappa;  ///< of each material [Pa]; 0: its cells have no pressure, as nu <= 1/4
+};
+/// Their parts.
+MixedParts mixed_parts(const AveragedSprings& law);
+
 /// What the energy of a cell depends on beside the positions of its corners.
 struct CellForm {
   double volume;                            ///< of the filled part [m^3]

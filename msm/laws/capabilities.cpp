@@ -11,6 +11,7 @@ namespace springproof {
 namespace {
 
 constexpr const char* in_kernels = "its laws occur together as in no kernel";
+constexpr const char* of_several = "its cells are of several materials";
 
 bool each_law_once(const MassSpringModel& model) {
   std::vector<std::size_t> kinds;
@@ -46,6 +47,8 @@ std::string together_lack(const MassSpringModel& model, Capability what) {
     case nodal_pressures:
       return dispersion ? "" : "it has no momentum dispersion";
     case viscosity:
+      if (!model.network.cells.materials.empty() && !averaged && !consists_of<Springs>(model))
+        return "its cells, which are not of averaged springs, are of several materials";
       return model.network.cells.empty() && !consists_of<Springs>(model)
                  ? "its network has no cells, and more than springs between nodes"
                  : "";
@@ -53,8 +56,6 @@ std::string together_lack(const MassSpringModel& model, Capability what) {
       return "";
   }
 }
-
-constexpr const char* of_several = "its cells are of several materials";
 
 std::string mass_average_lacks(const Network& network) {
   if (!network.cells.materials.empty()) return of_several;
@@ -86,6 +87,7 @@ std::string lacks(const Network& network, Capability what) {
   switch (what) {
     case lattice_kernels:
     case gpu:
+      if (!cells.materials.empty()) return of_several;
       if (periodic || !network.triangles.empty()) return "its network is periodic or planar";
       return cells.cut() || cells.kind() == CellKind::boxes ? "its cells are cut, or boxes" : "";
     case cell_kernels:
@@ -94,6 +96,7 @@ std::string lacks(const Network& network, Capability what) {
     case list_stiffness:
       return springs_at_rest(network) ? "" : "its springs have tension at rest";
     case equal_cells:
+      if (!cells.materials.empty()) return of_several;
       return cells.grid ? "" : "its network is no lattice of equal cells";
     case cut_multigrid:
       return cells.cut() ? "" : "its cells are not cut";
@@ -101,7 +104,7 @@ std::string lacks(const Network& network, Capability what) {
       return cells.grid && !periodic ? "" : "its network is no lattice of equal cells, or is periodic";
     case relaxation:
       if (!network.image_of.empty()) return "its network is periodic";
-      if (!cells.materials.empty()) return "its cells are of several materials";
+      if (!cells.materials.empty()) return of_several;
       return cells.empty() ? "its network has no cells" : "";
     case mass_average:
       return mass_average_lacks(network);

@@ -16,6 +16,13 @@ CellVector hourglass(int component, int p, int q) {
   return h;
 }
 
+/// Of the materials.
+std::vector<Eigen::Matrix<double, 24, 24>> cell_matrices(const HourglassCorrection& law, double edge) {
+  std::vector<Eigen::Matrix<double, 24, 24>> all = {law.cell_matrix(edge)};
+  for (const HourglassCorrection& other : law.regions) all.push_back(other.cell_matrix(edge));
+  return all;
+}
+
 }  // namespace
 
 double paired_stiffness(double A) { return std::isinf(A) ? 0.5 : 3 * A / (2 * (4 + 3 * A)); }
@@ -49,28 +56,32 @@ Eigen::Matrix<double, 24, 24> HourglassCorrection::cell_matrix(double edge) cons
 }
 
 double HourglassCorrection::energy(const Network& network, const NodalVectors& x) const {
-  const auto K = cell_matrix(network.cells.edge);
+  const auto K = cell_matrices(*this, network.cells.edge);
   double sum = 0;
-  for (const Hexahedron& cell : network.cells.corners) {
-    const CellVector u = displacement_of(cell, network, x);
-    sum += 0.5 * u.dot(K * u);
+  for (std::size_t c = 0; c < network.cells.size(); ++c) {
+    const CellVector u = displacement_of(network.cells.corners[c], network, x);
+    sum += 0.5 * u.dot(K[network.cells.material(c)] * u);
   }
   return sum;
 }
 
 void HourglassCorrection::add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const {
-  const auto K = cell_matrix(network.cells.edge);
-  for (const Hexahedron& cell : network.cells.corners) {
-    const CellVector force = K * displacement_of(cell, network, x);
+  const auto K = cell_matrices(*this, network.cells.edge);
+  for (std::size_t c = 0; c < network.cells.size(); ++c) {
+    const Hexahedron& cell = network.cells.corners[c];
+    const CellVector force = K[network.cells.material(c)] * displacement_of(cell, network, x);
     for (int n = 0; n < 8; ++n) f.row(cell[n]) -= force.segment<3>(3 * n).transpose();
   }
 }
 
 void HourglassCorrection::add_tangent(const Network& network, const NodalVectors&, BlockMatrix& K) const {
-  const auto cell_K = cell_matrix(network.cells.edge);
-  for (const Hexahedron& cell : network.cells.corners)
+  const auto of_materials = cell_matrices(*this, network.cells.edge);
+  for (std::size_t c = 0; c < network.cells.size(); ++c) {
+    const Hexahedron& cell = network.cells.corners[c];
+    const auto& cell_K = of_materials[network.cells.material(c)];
     for (int m = 0; m < 8; ++m)
       for (int n = 0; n < 8; ++n) K.add(cell[m], cell[n], cell_K.block<3, 3>(3 * m, 3 * n));
+  }
 }
 
 }  // namespace springproof

@@ -1,6 +1,8 @@
 // Force law: the six bending (and three torsional) hourglass modes of a cubic cell, given their continuum stiffness.
 #pragma once
 
+#include <vector>
+
 #include "msm/algebra/block_matrix.h"
 #include "msm/laws/law_traits.h"
 #include "msm/topology/network.h"
@@ -28,10 +30,11 @@ struct HourglassCorrection {
                : nullptr;
   }
 
-  double shear_modulus = 0;  ///< G [Pa]
-  double poisson_ratio = 0;  ///< nu [1]
-  double face_to_cube = 2;   ///< A of the springs it corrects
-  bool torsion = false;      ///< correct the modes u_x = yz, u_y = zx, u_z = xy too
+  double shear_modulus = 0;                       ///< G [Pa]
+  double poisson_ratio = 0;                       ///< nu [1]
+  double face_to_cube = 2;                        ///< A of the springs it corrects
+  bool torsion = false;                           ///< correct the modes u_x = yz, u_y = zx, u_z = xy too
+  std::vector<HourglassCorrection> regions = {};  ///< those of the cells of material 1, 2, ...; of material 0: this
 
   /// Names the parameters, for springs files (law_traits.h).
   template <class Fields>
@@ -55,6 +58,9 @@ struct HourglassCorrection {
   };
   /// That of a cell of edge l [m].
   Stiffness stiffness(double edge) const;
+
+  /// That of a material, by its number.
+  const HourglassCorrection& in(int material) const { return material == 0 ? *this : regions[material - 1]; }
 
   /// The added stiffness of one cell of edge l [N/m]; unknown 3 * corner + axis.
   Eigen::Matrix<double, 24, 24> cell_matrix(double edge) const;

@@ -36,32 +36,37 @@ MeanEdgeVolume mean_edge_volume(const Hexahedron& cell, const NodalVectors& x) {
 double VolumeCorrection::energy(const Network& network, const NodalVectors& x) const {
   const double V = network.cells.volume();
   double sum = 0;
-  for (const Hexahedron& cell : network.cells.corners) {
-    const double J = mean_edge_volume(cell, x).value / V;
-    if (J <= 0 && form == VolumeEnergy::bounded) return std::numeric_limits<double>::infinity();
-    sum += V * kappa * volume_density(form, J).value;
+  for (std::size_t c = 0; c < network.cells.size(); ++c) {
+    const VolumeCorrection& own = in(network.cells.material(c));
+    const double J = mean_edge_volume(network.cells.corners[c], x).value / V;
+    if (J <= 0 && own.form == VolumeEnergy::bounded) return std::numeric_limits<double>::infinity();
+    sum += V * own.kappa * volume_density(own.form, J).value;
   }
   return sum;
 }
 
 void VolumeCorrection::add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const {
   const double V = network.cells.volume();
-  for (const Hexahedron& cell : network.cells.corners) {
+  for (std::size_t c = 0; c < network.cells.size(); ++c) {
+    const Hexahedron& cell = network.cells.corners[c];
+    const VolumeCorrection& own = in(network.cells.material(c));
     const MeanEdgeVolume v = mean_edge_volume(cell, x);
-    const double pressure = kappa * volume_density(form, v.value / V).slope;
+    const double pressure = own.kappa * volume_density(own.form, v.value / V).slope;
     for (int n = 0; n < 8; ++n) f.row(cell[n]) -= pressure * v.gradient.row(n);
   }
 }
 
 void VolumeCorrection::add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const {
   const double V = network.cells.volume();
-  for (const Hexahedron& cell : network.cells.corners) {
+  for (std::size_t c = 0; c < network.cells.size(); ++c) {
+    const Hexahedron& cell = network.cells.corners[c];
+    const VolumeCorrection& own = in(network.cells.material(c));
     const MeanEdgeVolume v = mean_edge_volume(cell, x);
-    const VolumeDensity d = volume_density(form, v.value / V);
+    const VolumeDensity d = volume_density(own.form, v.value / V);
     for (int m = 0; m < 8; ++m)
       for (int n = 0; n < 8; ++n)
-        K.add(cell[m], cell[n], kappa * d.curvature / V * v.gradient.row(m).transpose() * v.gradient.row(n));
-    add_volume_curvature(cell, v, kappa * d.slope, K);
+        K.add(cell[m], cell[n], own.kappa * d.curvature / V * v.gradient.row(m).transpose() * v.gradient.row(n));
+    add_volume_curvature(cell, v, own.kappa * d.slope, K);
   }
 }
 

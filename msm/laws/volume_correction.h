@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "msm/algebra/block_matrix.h"
 #include "msm/laws/law_traits.h"
@@ -23,8 +24,9 @@ struct VolumeCorrection {
   static constexpr LawTraits traits = {
       "volume correction", Reach::cells, {Capability::lattice_kernels, Capability::gpu, Capability::energy_momentum}};
 
-  double kappa = 0;                           ///< lambda - G [Pa]
-  VolumeEnergy form = VolumeEnergy::bounded;  ///< how the energy grows with J
+  double kappa = 0;                            ///< lambda - G [Pa]
+  VolumeEnergy form = VolumeEnergy::bounded;   ///< how the energy grows with J
+  std::vector<VolumeCorrection> regions = {};  ///< those of the cells of material 1, 2, ...; of material 0: this
 
   /// Names the parameters, for springs files (law_traits.h).
   template <class Fields>
@@ -32,6 +34,9 @@ struct VolumeCorrection {
     f.number("kappa_Pa", kappa);
     f.choice("form", form);
   }
+
+  /// That of a material, by its number.
+  const VolumeCorrection& in(int material) const { return material == 0 ? *this : regions[material - 1]; }
 
   double energy(const Network& network, const NodalVectors& x) const;  ///< [J]; +inf if J <= 0 (bounded)
   void add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const;  ///< f += -dE/dx [N]

@@ -64,8 +64,12 @@ double affine_shear_modulus(const MassSpringModel& model) {
 double volume_stiffness_ratio(const MassSpringModel& model) {
   if (const MomentumDispersion* dispersion = dispersion_of(model))
     return added_lambda(*dispersion, model.network.triangles.empty() ? 3 : 2);
-  if (const AveragedSprings* averaged = averaged_springs_of(model))
-    return averaged->lame_lambda / averaged->shear_modulus - 1;
+  if (const AveragedSprings* averaged = averaged_springs_of(model)) {
+    double largest = averaged->lame_lambda / averaged->shear_modulus;
+    for (const AveragedSprings& other : averaged->regions)
+      largest = std::max(largest, other.lame_lambda / other.shear_modulus);
+    return largest - 1;
+  }
   if (const auto* volume = law_of<VolumeCorrection>(model)) return volume->kappa / affine_shear_modulus(model);
   return 0;
 }

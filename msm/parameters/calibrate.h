@@ -14,8 +14,8 @@ double affine_shear_modulus(const Network& network);
 /// That of a model: of its springs, or of the averaged springs of its cells.
 double affine_shear_modulus(const MassSpringModel& model);
 
-/// lambda that the volume term of a model adds to that of its springs, over their shear modulus; 0: it has none.
-/// Of a whole model, not of a part.
+/// lambda that the volume term of a model adds to that of its springs, over their shear modulus, of several
+/// materials the largest; 0: it has none.  Of a whole model, not of a part.
 double volume_stiffness_ratio(const MassSpringModel& model);
 
 /// Scales all spring constants so that affine_shear_modulus(network) == G.

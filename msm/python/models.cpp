@@ -64,13 +64,17 @@ std::shared_ptr<BodyModel> build(const std::string& name, const std::shared_ptr<
     throw InputError(fmt::format("{}: cut = True: the body is a block (allowed: a body by voxels())", name));
   if (!cut && !held.empty())
     throw InputError(fmt::format("{}: held: is for cut cells (allowed: with cut = True)", name));
-  if (!body->regions.empty() && (!cut || made.parameters.coarsened.value_or(false)))
-    throw InputError(fmt::format("{}: is of one material here (allowed for a body of regions: cut = True)", name));
+  if (!body->regions.empty() && (!has_cut_cells(made.parameters.row) || made.parameters.coarsened.value_or(false)))
+    throw InputError(
+        fmt::format("{}: is of one material here (allowed for a body of regions: lattices of cells without "
+                    "momentum dispersion, not coarsened)",
+                    name));
   for (const std::string& on : held) patch(*body->tetrahedra, on);
   EmbeddedModel built = long_call([&] {
     if (made.parameters.coarsened.value_or(false)) return build_measured(made.parameters, *body, held, material);
     return cut ? build_cut(made.parameters, *body->cut, held, *body->mesh, material, materials_of(body->regions))
-               : build_embedded(made.parameters, *body->mesh, material, body->region.get());
+               : build_embedded(made.parameters, *body->mesh, material, body->region.get(),
+                                materials_of(body->regions));
   });
   attach(masses, *body->mesh, built.embedding, built.model.network);
   made.embedding = std::move(built.embedding);

@@ -1,7 +1,5 @@
 #include "msm/statics/mixed_form.h"
 
-#include <stdexcept>
-
 #include "msm/laws/capabilities.h"
 #include "msm/multigrid/cut/cut_mixed_multigrid.h"
 #include "msm/multigrid/cut/cut_multigrid.h"
@@ -22,14 +20,12 @@ bool on_lattice(const MassSpringModel& model) {
 }
 
 bool mixed_form_pays(const MassSpringModel& model) {
-  return on_lattice(model) && model.network.cells.materials.empty() &&
+  return on_lattice(model) &&
          volume_stiffness_ratio(model) >
              (can(model, Capability::cut_multigrid) ? cut_cells_mixed_above_kappa : mixed_above_kappa);
 }
 
 std::unique_ptr<SaddlePoint> saddle_point_at_rest(const MassSpringModel& model, const std::vector<char>& fixed) {
-  if (!model.network.cells.materials.empty())
-    throw std::runtime_error("a body of several materials has no mixed form (allowed for it: multigrid, cholesky)");
   const double G = affine_shear_modulus(model);
   if (can(model, Capability::cut_multigrid)) return std::make_unique<CutMixedMultigrid>(model, fixed);
   if (dispersion_of(model)) return std::make_unique<DispersionMultigrid>(model, fixed, G);

@@ -15,24 +15,25 @@ namespace {
 constexpr double pressure_tolerance = 1e-8;
 constexpr int most_krylov_steps = 200;
 
-/// The volume term of a model, and its other laws.
+/// The volume terms of the materials of a model, and its other laws.
 struct Split {
-  double kappa = 0;
-  std::function<VolumeDensity(double J)> density = {};
+  std::vector<double> kappa = {};
+  std::vector<std::function<VolumeDensity(double J)>> density = {};
   std::vector<ForceLaw> springs = {};
 
   explicit Split(const MassSpringModel& model) {
     for (const ForceLaw& law : model.laws) std::visit(*this, law);
   }
   void operator()(const VolumeCorrection& law) {
-    kappa = law.kappa;
-    density = [form = law.form](double J) { return volume_density(form, J); };
+    kappa = {law.kappa};
+    density = {[form = law.form](double J) { return volume_density(form, J); }};
   }
-  void operator()(AveragedSprings law) {
-    kappa = law.lame_lambda - law.shear_modulus;
-    density = [curve = law.curve](double J) { return volume_term(curve, J); };
-    law.lame_lambda = law.shear_modulus;
-    springs.emplace_back(law);
+  void operator()(const AveragedSprings& law) {
+    MixedParts parts = mixed_parts(law);
+    kappa = std::move(parts.kappa);
+    for (int m = 0; m < static_cast<int>(kappa.size()); ++m)
+      density.emplace_back([curve = law.in(m).curve](double J) { return volume_term(curve, J); });
+    springs.emplace_back(std::move(parts.springs));
   }
   template <class Law>
   void operator()(const Law& law) {
@@ -84,7 +85,11 @@ class MixedNewton::Linearised : public SaddlePoint {
 
   void take_compliance() {
     const double l = newton_.unit_length_;
-    compliance_ = newton_.unit_pressure_ / (newton_.kappa_ * l * l * l) * newton_.rest_volume_.cwiseQuotient(curvature);
+    compliance_.setOnes(curvature.size());
+    for (Eigen::Index c = 0; c < curvature.size(); ++c)
+      if (newton_.kappa_[c] > 0)
+        compliance_[c] =
+            newton_.unit_pressure_ / (newton_.kappa_[c] * l * l * l) * newton_.rest_volume_[c] / curvature[c];
   }
 
   std::vector<CellVolume> volumes;
@@ -101,15 +106,17 @@ MixedNewton::MixedNewton(const MassSpringModel& model, const std::vector<char>& 
     : network_(model.network), fixed_(fixed) {
   Split parts(model);
   springs_ = std::move(parts.springs);
-  kappa_ = parts.kappa;
   density_ = std::move(parts.density);
   unit_pressure_ = affine_shear_modulus(model);
   unit_length_ = model.network.cells.edge;
   rest_ = saddle_point_at_rest(model, fixed);
   K_ = BlockMatrix(model.network);
   rest_volume_.resize(static_cast<Eigen::Index>(network_.cells.size()));
-  for (std::size_t c = 0; c < network_.cells.size(); ++c)
+  kappa_.resize(rest_volume_.size());
+  for (std::size_t c = 0; c < network_.cells.size(); ++c) {
     rest_volume_[static_cast<Eigen::Index>(c)] = cell_volume(network_, c, network_.X).value;
+    kappa_[static_cast<Eigen::Index>(c)] = parts.kappa[network_.cells.material(c)];
+  }
   p_ = accepted_p_ = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(model.network.cells.size()));
 }
 
@@ -117,7 +124,8 @@ MixedNewton::Linearised MixedNewton::linearise(const NodalVectors& positions, co
   NodalVectors x = positions;
   carry(network_.cells.carried, x);
   Linearised at(*this);
-  at.curvature = at.mismatch = Eigen::VectorXd(p_.size());
+  at.curvature.setOnes(p_.size());
+  at.mismatch.setZero(p_.size());
   K_.set_zero();
   NodalVectors f = NodalVectors::Zero(x.rows(), 3);
   for (const ForceLaw& law : springs_)
@@ -129,11 +137,15 @@ MixedNewton::Linearised MixedNewton::linearise(const NodalVectors& positions, co
         law);
   at.volumes.reserve(network_.cells.size());
   for (std::size_t c = 0; c < network_.cells.size(); ++c) {
-    const CellVolume& v = at.volumes.emplace_back(cell_volume(network_, c, x));
     const auto i = static_cast<Eigen::Index>(c);
-    const VolumeDensity d = density_(v.value / rest_volume_[i]);
+    if (!(kappa_[i] > 0)) {
+      at.volumes.push_back({0, Eigen::Matrix<double, 24, 1>::Zero()});
+      continue;
+    }
+    const CellVolume& v = at.volumes.emplace_back(cell_volume(network_, c, x));
+    const VolumeDensity d = density_[network_.cells.material(c)](v.value / rest_volume_[i]);
     at.curvature[i] = d.curvature;
-    at.mismatch[i] = rest_volume_[i] * (p_[i] / kappa_ - d.slope) / d.curvature;
+    at.mismatch[i] = rest_volume_[i] * (p_[i] / kappa_[i] - d.slope) / d.curvature;
     for (int n = 0; n < 8; ++n) f.row(network_.cells.corners[c][n]) -= p_[i] * v.gradient.segment<3>(3 * n).transpose();
     add_volume_curvature(network_, c, x, p_[i], K_);
   }
@@ -165,7 +177,8 @@ bool MixedNewton::step(const BoundaryConditions& bc, double tolerance, int max_i
     const double scale = std::sqrt(std::max(on_fixed, bc.external.squaredNorm())),
                  relative = scale > 0 ? std::sqrt(on_free) / scale : 0;
     if (!std::isfinite(relative)) return false;
-    const double pressures = kappa_ * at.mismatch.cwiseProduct(at.curvature).cwiseQuotient(rest_volume_).norm();
+    const double pressures =
+        kappa_.cwiseProduct(at.mismatch).cwiseProduct(at.curvature).cwiseQuotient(rest_volume_).norm();
     if (k > 0 && relative <= tolerance && pressures <= pressure_tolerance * p_.norm()) return true;
     if (k == max_iterations) return false;
     ++iterations_;

@@ -11,7 +11,8 @@
 namespace springproof {
 
 /// Finds x and p of   f_springs(x) + sum_c p_c dV_c/dx = external,   psi'(V_c/V) = p_c / kappa,  psi the volume term of
-/// the model (msm/laws/volume_correction.h, strain_energy.h) and V the volume of the filled part of a cell.  A guess
+/// the model (msm/laws/volume_correction.h, strain_energy.h) and V the volume of the filled part of a cell; p_c = 0 in
+/// cells of materials without one (mixed_parts, msm/laws/averaged_springs.h).  A guess
 /// with a wrong volume then causes no forces of kappa times the error, which impede the form without p.  Steps are
 /// solved by GMRES preconditioned by the mixed multigrid of the rest state.
 class MixedNewton {
@@ -31,14 +32,14 @@ class MixedNewton {
   MixedVector solve(Linearised& at, const Eigen::VectorXd& r, const Eigen::VectorXd& h, double tolerance) const;
 
   const Network& network_;
-  std::vector<ForceLaw> springs_;  ///< the laws without the volume term
-  double kappa_ = 0;               ///< of the volume term [Pa]
-  std::function<VolumeDensity(double J)> density_;
+  std::vector<ForceLaw> springs_;                                ///< the laws without the volume term
+  std::vector<std::function<VolumeDensity(double J)>> density_;  ///< of the volume term of each material
   std::vector<char> fixed_;
   double unit_length_ = 1, unit_pressure_ = 1;
   BlockMatrix K_;                      ///< stiffness at constant pressures [N/m]
   std::unique_ptr<SaddlePoint> rest_;  ///< at rest, in units of G and the cells' edge: preconditions
   Eigen::VectorXd rest_volume_;        ///< of the filled part of each cell [m^3]
+  Eigen::VectorXd kappa_;              ///< of the volume term of each cell [Pa]; 0: it has no pressure
   Eigen::VectorXd p_, accepted_p_;
   int iterations_ = 0;
 };

@@ -6,8 +6,6 @@
 #include <limits>
 #include <stdexcept>
 
-#include "meshes/materials.h"
-
 namespace springproof {
 
 CubicPattern isotropic_pattern(double face_to_cube) {
@@ -39,10 +37,8 @@ double cube_edge(const Mesh& mesh) {
   return edge[0];
 }
 
-namespace {
-
-/// The springs of all cells, shared ones merged: 13 slots per lattice point, one for each direction away from it.
-std::vector<Spring> superposed(const Network& network) {
+// 13 slots per lattice point, one for each direction away from it.
+std::vector<Spring> superposed(const Network& network, const std::vector<double>& of_material) {
   const Grid& grid = *network.cells.grid;
   const std::array<int, 3> points = {grid.cells[0] + 1, grid.cells[1] + 1, grid.cells[2] + 1};
   const auto point = [&](const std::array<int, 3>& p) {
@@ -64,24 +60,22 @@ std::vector<Spring> superposed(const Network& network) {
   std::vector<Spring> springs;
   for (std::size_t c = 0; c < network.cells.size(); ++c) {
     const std::size_t corner = point(grid.cell_index[c]);
+    const double times = of_material[network.cells.material(c)];
     for (const Part& part : parts) {
       int& s = spring_at[13 * (corner + part.from) + part.slot];
       if (s >= 0) {
-        springs[s].stiffness += part.stiffness;
+        springs[s].stiffness += times * part.stiffness;
         continue;
       }
       s = static_cast<int>(springs.size());
-      springs.push_back(
-          {network.cells.corners[c][part.i], network.cells.corners[c][part.j], part.stiffness, part.rest_length});
+      springs.push_back({network.cells.corners[c][part.i], network.cells.corners[c][part.j], times * part.stiffness,
+                         part.rest_length});
     }
   }
   return merge_springs(std::move(springs));
 }
 
-}  // namespace
-
 Network lattice_without_springs(const Mesh& mesh) {
-  require_one_material(mesh);
   const Grid& grid = grid_of(mesh);
   Network network;
   network.X = mesh.nodes;
@@ -103,7 +97,7 @@ Network cubic_lattice(const Mesh& mesh, const CubicPattern& pattern) {
       for (int d = 0; d < 3; ++d) axes += hexahedron_corners[a][d] != hexahedron_corners[b][d];
       if (share[axes] > 0) network.cells.springs.push_back({a, b, share[axes], edge * std::sqrt(double(axes))});
     }
-  network.springs = superposed(network);
+  network.springs = superposed(network, {1});
   return network;
 }
 

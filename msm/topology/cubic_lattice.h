@@ -32,6 +32,11 @@ double cube_edge(const Mesh& mesh);
 /// @throws std::invalid_argument if the mesh is not cut from one lattice.
 Network lattice_without_springs(const Mesh& mesh);
 
+/// The springs of all cells of a lattice, those that cells share merged.
+/// @param network lattice of cubes, with the springs of one cell
+/// @param of_material the springs of a cell of each material over these
+std::vector<Spring> superposed(const Network& network, const std::vector<double>& of_material);
+
 /// Network of a mesh of equal cubes: each cell contributes edges k_e/4, face diagonals k_f/2 and cube diagonals k_c
 /// (Golec et al. 2019, sec. 5.4).
 /// @throws std::invalid_argument as cube_edge().

@@ -332,7 +332,7 @@ constexpr KeyTable tables[] = {
   {"material",                   "[material]",                       "Two moduli. A single number goes with each of a list; two lists are read in pairs.", material_keys},
   {"material.relaxation",        "",                                 "",                                                            relaxation_keys},
   {"material.relaxation.branches", "",                               "",                                                            branch_keys},
-  {"region",                     "[[region]]",                       "A part of the body of another material; where two overlap, the later one. By finite elements and hybmss_avg in cut cells.", region_keys},
+  {"region",                     "[[region]]",                       "A part of the body of another material; where two overlap, the later one. By finite elements, hybmss_avg in cut cells, lattices without momentum dispersion in whole cubes.", region_keys},
   {"load.displacement_m",        "a displacement",                   "",                                                            displacement_keys},
   {"load.displacement_gradient", "an affine displacement",           "",                                                            affine_keys},
   {"load.rotation_deg",          "a rotation",                       "",                                                            rotation_keys},

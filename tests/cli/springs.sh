@@ -324,8 +324,13 @@ grep -q '"version": 5' regions.json && grep -q '"bonds": ' regions.json && grep 
 sed 's/"hybmss_avg"/"hybmss_avg", { file = "regions.json", label = "mine" }/' regions.toml >both.toml
 "$program" compare both.toml --out refused --quiet >log 2>&1 && fail "a file of several materials is a model"
 grep -q 'compare.models: mine is of one material in a body' log || fail "a file of several materials as a model: $(cat log)"
-"$program" export regions.toml --to jolt --out refused.json >log 2>&1 && fail "an engine takes several materials"
-grep -q "region: 'core': export --to jolt of whole cubes is for bodies of one material" log || fail "an engine: $(cat log)"
+"$program" export regions.toml --to mujoco --out refused.xml >log 2>&1 && fail "an engine takes several materials"
+grep -q "region: 'core': export --to mujoco of whole cubes is for bodies of one material" log || fail "an engine: $(cat log)"
+sed 's/"hybmss_avg"/"msm_18"/; s/poisson_ratio = 0.48*$/poisson_ratio = 0.25/' regions.toml >quarter.toml
+"$program" export quarter.toml --poisson-ratio 0.25 --to jolt --out refused.json >log 2>&1 && fail "springs alone are of any ratio"
+grep -q "region: 'side': poisson_ratio: is 0.3, and springs alone" log || fail "a ratio of a region: $(cat log)"
+sed -i 's/poisson_ratio = 0.3$/poisson_ratio = 0.25/' quarter.toml
+export_to quarter.toml --poisson-ratio 0.25 --to jolt --out quarter.json
 if [ -n "$numpy" ]; then
   for form in json npz; do
     off=$("$numpy" springs.py "regions.$form" | awk '{ print $3 }')

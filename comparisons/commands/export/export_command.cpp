@@ -184,7 +184,8 @@ Mesh carried_vertices(const ExportRequest& request, const PreparedCase& prepared
 /// `cut`: of cut cells where the model has them and the case does not say otherwise.
 SpringsFile springs_of(const ExportRequest& request, bool cut = false) {
   const Experiment of_case = is_body(request.what) ? Experiment() : read_case(request.what);
-  if (!cut) require_one_material(of_case, fmt::format("export --to {} of whole cubes", request.to));
+  if (!cut && request.to != "jolt")  // each of its springs has a stiffness of its own
+    require_one_material(of_case, fmt::format("export --to {} of whole cubes", request.to));
   Experiment e = is_body(request.what) ? body_alone(request) : one_of_each(of_case, request);
   if (!request.cells.empty()) {
     if (e.body.is_voxels()) throw InputError("--cells: is for bodies of hexahedra; this one has --voxels N");

@@ -108,15 +108,16 @@ struct AddSecantForces {
     const std::array<Vec3, 8> g = mean_gradients(network.cells.full());
     Corners gradient;
     for (int n = 0; n < 8; ++n) gradient.col(n) = g[n];
-    const auto at = [&](const Mat3& C, Derivative up_to) -> Stress {
+    const auto at = [form = law.form](const Mat3& C, Derivative up_to) -> Stress {
       const double J = std::sqrt(C.determinant());
-      const VolumeDensity psi = volume_density(law.form, J);
+      const VolumeDensity psi = volume_density(form, J);
       return {psi.value, up_to == Derivative::none ? Mat3::Zero() : Mat3(psi.slope * J * C.inverse())};
     };
-    for (const Hexahedron& cell : network.cells.corners) {
+    for (std::size_t c = 0; c < network.cells.size(); ++c) {
+      const Hexahedron& cell = network.cells.corners[c];
       const Mat3 F0 = corners_at(cell, x0) * gradient.transpose(), F1 = corners_at(cell, x1) * gradient.transpose();
       const Mat3 S = secant_stress(F0.transpose() * F0, F1.transpose() * F1, at);
-      subtract(V * law.kappa / 2 * (F0 + F1) * S * gradient, cell, f);
+      subtract(V * law.in(network.cells.material(c)).kappa / 2 * (F0 + F1) * S * gradient, cell, f);
     }
   }
 

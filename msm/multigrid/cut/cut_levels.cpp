@@ -166,39 +166,46 @@ CutLevel coarsen(CutLevel& fine) {
 
 }  // namespace
 
-void CutLevel::invert_anchored() {
-  anchored.clear();
+std::vector<std::vector<int>> CutLevel::anchored_points() const {
+  std::vector<std::vector<int>> all;
   const Carriers carriers = carriers_of(static_cast<int>(point.size()), carried);
   for (const Anchor& a : anchors) {
-    std::vector<int>& points = anchored.emplace_back();
+    std::vector<int>& points = all.emplace_back();
     for (const int n : a.corners) for_each_carrier(carriers, n, [&](int p, double) { points.push_back(p); });
   }
   for (const InterfaceBond& b : bonds) {
-    std::vector<int>& points = anchored.emplace_back();
+    std::vector<int>& points = all.emplace_back();
     for_each_corner(b,
                     [&](int n, double) { for_each_carrier(carriers, n, [&](int p, double) { points.push_back(p); }); });
   }
-  for (std::vector<int>& points : anchored) {
+  for (std::vector<int>& points : all) {
     std::sort(points.begin(), points.end());
     points.erase(std::unique(points.begin(), points.end()), points.end());
   }
-  std::sort(anchored.begin(), anchored.end());
-  anchored.erase(std::unique(anchored.begin(), anchored.end()), anchored.end());
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
+}
+
+Eigen::MatrixXd CutLevel::dense(const std::vector<int>& points) const {
+  const auto size = static_cast<Eigen::Index>(points.size());
+  Eigen::MatrixXd K = Eigen::MatrixXd::Zero(3 * size, 3 * size);
+  for (Eigen::Index m = 0; m < size; ++m)
+    for (Eigen::Index n = 0; n < size; ++n) {
+      const float* block = A.block(points[m], points[n]);
+      if (!block) continue;
+      for (int a = 0; a < 3; ++a)
+        for (int b = 0; b < 3; ++b) K(3 * m + a, 3 * n + b) = block[3 * a + b];
+    }
+  for (Eigen::Index i = 0; i < K.rows(); ++i)
+    if (K(i, i) == 0) K(i, i) = 1e30;  // fixed
+  return K;
+}
+
+void CutLevel::invert_anchored() {
+  anchored = anchored_points();
   anchored_inverse.clear();
-  for (const std::vector<int>& points : anchored) {
-    const auto size = static_cast<Eigen::Index>(points.size());
-    Eigen::MatrixXd K = Eigen::MatrixXd::Zero(3 * size, 3 * size);
-    for (Eigen::Index m = 0; m < size; ++m)
-      for (Eigen::Index n = 0; n < size; ++n) {
-        const float* block = A.block(points[m], points[n]);
-        if (!block) continue;
-        for (int a = 0; a < 3; ++a)
-          for (int b = 0; b < 3; ++b) K(3 * m + a, 3 * n + b) = block[3 * a + b];
-      }
-    for (Eigen::Index i = 0; i < K.rows(); ++i)
-      if (K(i, i) == 0) K(i, i) = 1e30;  // fixed
-    anchored_inverse.push_back(K.inverse().cast<float>());
-  }
+  for (const std::vector<int>& points : anchored) anchored_inverse.push_back(dense(points).inverse().cast<float>());
 }
 
 void CutLevel::relax_anchored(std::size_t c, const float* b, float* x) const {

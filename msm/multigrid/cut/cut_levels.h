@@ -29,9 +29,12 @@ struct CutLevel {
 
   /// Points that move the corners of a cell with anchors, or of two with bonds, which are stiffer than others: they are
   /// relaxed together.
-  std::vector<std::vector<int>> anchored;
-  std::vector<Eigen::MatrixXf> anchored_inverse;  ///< of their rows and columns of A
-  void invert_anchored();                         ///< sets the two from A
+  std::vector<std::vector<int>> anchored_points() const;
+  /// Their rows and columns of A, large on the diagonal of fixed unknowns.
+  Eigen::MatrixXd dense(const std::vector<int>& points) const;
+  std::vector<std::vector<int>> anchored;         ///< anchored_points()
+  std::vector<Eigen::MatrixXf> anchored_inverse;  ///< of dense()
+  void invert_anchored();                         ///< sets the two
   void relax_anchored(std::size_t number, const float* b, float* x) const;
 
   CutMatrix<float> A;    ///< in units of the shear modulus times the finest edge

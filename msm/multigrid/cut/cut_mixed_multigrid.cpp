@@ -1,11 +1,13 @@
 #include "msm/multigrid/cut/cut_mixed_multigrid.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <set>
 
 #include "msm/algebra/fixed.h"
 #include "msm/multigrid/v_cycle.h"
+#include "msm/parameters/calibrate.h"
 
 namespace springproof {
 namespace {
@@ -19,11 +21,18 @@ CellShape in_units(CellShape cell, double length) {
 constexpr int sweeps_of_cut_cells = 2;  // before and after the coarser lattice
 constexpr float damped = 2;             // of the inverse diagonal blocks in the Schur complement; 1 diverges
 
-/// Without the volume term.
-AveragedSprings springs_alone(AveragedSprings law) {
-  law.lame_lambda = law.shear_modulus;
-  return law;
-}
+/// Row of B and entry of C of a cell; without a pressure p = 0 on its own.
+struct VolumeRow {
+  Eigen::Matrix<double, 24, 1> gradient = Eigen::Matrix<double, 24, 1>::Zero();
+  double compliance = 1;
+
+  /// Of a cell in units; `kappa` of the materials.
+  VolumeRow(const CellShape& cell, const std::vector<double>& kappa) {
+    if (!(kappa[cell.material] > 0)) return;
+    gradient = volume_gradient(cell);
+    compliance = cell.volume() / kappa[cell.material];
+  }
+};
 
 }  // namespace
 
@@ -31,7 +40,9 @@ AveragedSprings springs_alone(AveragedSprings law) {
 class CutMixedMultigrid::Level {
  public:
   /// Of a lattice with the matrix of its springs alone; `fixed_unknowns` of the finest level, else empty.
-  Level(CutLevel lattice_of_level, std::vector<char> fixed_unknowns, double finest_edge, double kappa);
+  Level(CutLevel lattice_of_level, std::vector<char> fixed_unknowns);
+  /// Sets the rows of B and C, for cells in units of `finest_edge`.
+  void set_volumes(double finest_edge, const std::vector<double>& kappa, int schur_sweeps);
 
   void smooth(Smoothing when);
   void residual();  ///< d = f - K u - B^T p, Bu = B u
@@ -43,6 +54,16 @@ class CutMixedMultigrid::Level {
   Eigen::VectorXf f, g, u, p;
 
  private:
+  /// Points of CutLevel::anchored, relaxed together, and beside bonds with the pressures of the cells that have no
+  /// others.  These are left out of S: bonds are stiff, so D knows nothing of how both sides move together.
+  struct Patch {
+    std::vector<int> points, cells;
+    Eigen::MatrixXf gradient;  ///< rows of B of the cells
+    Eigen::MatrixXf inverse;   ///< of their rows and columns of the saddle point
+  };
+  void set_up_patches();
+  Patch patch_of(std::vector<int> points, std::vector<int> cells, const Carriers& carriers) const;
+  void relax_patch(const Patch& patch, Eigen::VectorXf& b);  ///< b = load(), and stays so
   void set_up_schur();
   void relax_schur(bool ascending);  ///< Gauss-Seidel for S q = r
   void sweep(bool ascending);
@@ -54,28 +75,31 @@ class CutMixedMultigrid::Level {
   std::vector<char> fixed_;      ///< unknowns; empty: none
   std::vector<float> gradient_;  ///< 24 per cell: row of B
   Eigen::VectorXf compliance_;   ///< diagonal of C
-  int schur_sweeps_;
+  int schur_sweeps_ = 0;
+  std::vector<Patch> patches_;
   std::vector<int> begin_, column_;  ///< of the rows of S = C + B D B^T, a cell each
   std::vector<float> schur_;         ///< its entries
   Eigen::VectorXf inverse_schur_;    ///< of its diagonal
   Eigen::VectorXf d_, Bu_, r_, q_;
 };
 
-CutMixedMultigrid::Level::Level(CutLevel lattice_of_level, std::vector<char> fixed_unknowns, double finest_edge,
-                                double kappa)
-    : lattice(std::move(lattice_of_level)), fixed_(std::move(fixed_unknowns)), schur_sweeps_(kappa > 1000 ? 12 : 6) {
-  lattice.invert_anchored();
+CutMixedMultigrid::Level::Level(CutLevel lattice_of_level, std::vector<char> fixed_unknowns)
+    : lattice(std::move(lattice_of_level)), fixed_(std::move(fixed_unknowns)) {
   const std::size_t cells = lattice.cubes.size();
   f = u = d_ = Eigen::VectorXf::Zero(lattice.unknowns());
   compliance_ = inverse_schur_ = g = p = Bu_ = r_ = q_ = Eigen::VectorXf::Zero(static_cast<Eigen::Index>(cells));
-  gradient_.resize(24 * cells);
-  for (std::size_t c = 0; c < cells; ++c) {
-    const CellShape cell = in_units(lattice.shape(c), finest_edge);
-    const Eigen::Matrix<double, 24, 1> b = volume_gradient(cell);
-    for (int i = 0; i < 24; ++i) gradient_[24 * c + i] = static_cast<float>(b[i]);
-    compliance_[static_cast<Eigen::Index>(c)] = static_cast<float>(cell.volume() / kappa);
+}
+
+void CutMixedMultigrid::Level::set_volumes(double finest_edge, const std::vector<double>& kappa, int schur_sweeps) {
+  schur_sweeps_ = schur_sweeps;
+  gradient_.resize(24 * lattice.cubes.size());
+  for (std::size_t c = 0; c < lattice.cubes.size(); ++c) {
+    const VolumeRow row(in_units(lattice.shape(c), finest_edge), kappa);
+    for (int i = 0; i < 24; ++i) gradient_[24 * c + i] = static_cast<float>(row.gradient[i]);
+    compliance_[static_cast<Eigen::Index>(c)] = static_cast<float>(row.compliance);
   }
   set_up_schur();
+  set_up_patches();
 }
 
 void CutMixedMultigrid::Level::set_up_schur() {
@@ -119,6 +143,63 @@ void CutMixedMultigrid::Level::set_up_schur() {
     inverse_schur_[c] = 1 / schur_[start];
     begin_.push_back(static_cast<int>(column_.size()));
   }
+}
+
+void CutMixedMultigrid::Level::set_up_patches() {
+  const Carriers carriers = carriers_of(static_cast<int>(lattice.point.size()), lattice.carried);
+  std::vector<std::vector<int>> cells_at(lattice.point.size()), points_of(lattice.corners.size());
+  for (std::size_t c = 0; c < lattice.corners.size() && !lattice.bonds.empty(); ++c)
+    for (const int n : lattice.corners[c])
+      for_each_carrier(carriers, n, [&](int i, double) {
+        cells_at[i].push_back(static_cast<int>(c));
+        points_of[c].push_back(i);
+      });
+  for (std::vector<int>& points : lattice.anchored_points()) {
+    const auto is_inside = [&](int i) { return std::binary_search(points.begin(), points.end(), i); };
+    std::set<int> cells;
+    for (const int point : points)
+      for (const int c : cells_at[point])
+        if (std::all_of(points_of[c].begin(), points_of[c].end(), is_inside)) cells.insert(c);
+    for (const int c : cells) inverse_schur_[c] = 0;
+    patches_.push_back(patch_of(std::move(points), {cells.begin(), cells.end()}, carriers));
+  }
+}
+
+CutMixedMultigrid::Level::Patch CutMixedMultigrid::Level::patch_of(std::vector<int> points, std::vector<int> cells,
+                                                                   const Carriers& carriers) const {
+  const Eigen::Index n = 3 * static_cast<Eigen::Index>(points.size()), m = static_cast<Eigen::Index>(cells.size());
+  Eigen::MatrixXf B = Eigen::MatrixXf::Zero(m, n);
+  for (Eigen::Index k = 0; k < m; ++k)
+    for (int corner = 0; corner < 8; ++corner)
+      for_each_carrier(carriers, lattice.corners[cells[k]][corner], [&](int i, double w) {
+        const auto at = 3 * (std::lower_bound(points.begin(), points.end(), i) - points.begin());
+        const float* b = &gradient_[24 * static_cast<std::size_t>(cells[k]) + 3 * corner];
+        for (int a = 0; a < 3; ++a)
+          if (fixed_.empty() || !fixed_[3 * i + a]) B(k, at + a) += static_cast<float>(w) * b[a];
+      });
+  Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(n + m, n + m);
+  whole.topLeftCorner(n, n) = lattice.dense(points);
+  whole.bottomLeftCorner(m, n) = B.cast<double>();
+  whole.topRightCorner(n, m) = B.cast<double>().transpose();
+  for (Eigen::Index k = 0; k < m; ++k) whole(n + k, n + k) = -compliance_[cells[k]];
+  return {std::move(points), std::move(cells), std::move(B), whole.inverse().cast<float>()};
+}
+
+void CutMixedMultigrid::Level::relax_patch(const Patch& patch, Eigen::VectorXf& b) {
+  const Eigen::Index n = patch.gradient.cols(), m = patch.gradient.rows();
+  Eigen::VectorXf r(n + m), own(n);
+  for (Eigen::Index i = 0; i < n / 3; ++i) {
+    lattice.A.residual(b.data(), u.data(), patch.points[i], r.data() + 3 * i);
+    own.segment<3>(3 * i) = u.segment<3>(3 * patch.points[i]);
+  }
+  r.tail(m).noalias() = -patch.gradient * own;
+  for (Eigen::Index k = 0; k < m; ++k) r[n + k] += g[patch.cells[k]] + compliance_[patch.cells[k]] * p[patch.cells[k]];
+  const Eigen::VectorXf d = patch.inverse * r, force = patch.gradient.transpose() * d.tail(m);
+  for (Eigen::Index i = 0; i < n / 3; ++i) {
+    u.segment<3>(3 * patch.points[i]) += d.segment<3>(3 * i);
+    b.segment<3>(3 * patch.points[i]) -= force.segment<3>(3 * i);
+  }
+  for (Eigen::Index k = 0; k < m; ++k) p[patch.cells[k]] += d[n + k];
 }
 
 void CutMixedMultigrid::Level::relax_schur(bool ascending) {
@@ -190,14 +271,14 @@ void CutMixedMultigrid::Level::residual() {
 
 /// Gauss-Seidel for the displacements, then pressures q and displacements -D B^T q that restore the volumes.
 void CutMixedMultigrid::Level::sweep(bool ascending) {
-  const Eigen::VectorXf b = load();
-  const auto relax_anchored = [&] {
-    const std::size_t count = lattice.anchored.size();
-    for (std::size_t c = 0; c < count; ++c) lattice.relax_anchored(ascending ? c : count - 1 - c, b.data(), u.data());
+  Eigen::VectorXf b = load();
+  const auto relax_patches = [&] {
+    const std::size_t count = patches_.size();
+    for (std::size_t c = 0; c < count; ++c) relax_patch(patches_[ascending ? c : count - 1 - c], b);
   };
-  if (!ascending) relax_anchored();
+  if (!ascending) relax_patches();
   lattice.A.relax(lattice.D, ascending, b.data(), u.data());
-  if (ascending) relax_anchored();
+  if (ascending) relax_patches();
   divergence(u, Bu_);
   r_ = Bu_ - g - compliance_.cwiseProduct(p);
   q_.setZero();
@@ -244,15 +325,17 @@ void CutMixedMultigrid::Level::solve_coarsest(const CoarsestFactors& factors) {
 
 CutMixedMultigrid::CutMixedMultigrid(const MassSpringModel& model, const std::vector<char>& fixed)
     : nodes_(model.network, fixed), network_(model.network) {
-  const AveragedSprings &law = *averaged_springs_of(model), springs = springs_alone(law);
-  const double l = network_.cells.edge, unit = law.shear_modulus * l,
-               kappa = (law.lame_lambda - law.shear_modulus) / law.shear_modulus;
+  const AveragedSprings& law = *averaged_springs_of(model);
+  MixedParts parts = mixed_parts(law);
+  const int schur_sweeps = volume_stiffness_ratio(model) > 1000 && network_.bonds.empty() ? 12 : 6;
+  const double l = network_.cells.edge, unit = law.shear_modulus * l;
+  for (double& kappa : parts.kappa) kappa /= law.shear_modulus;
   gradient_.resize(24, static_cast<Eigen::Index>(network_.cells.size()));
   compliance_.resize(gradient_.cols());
   for (std::size_t c = 0; c < network_.cells.size(); ++c) {
-    const CellShape cell = in_units(network_.cells.shape(c), l);
-    gradient_.col(static_cast<Eigen::Index>(c)) = volume_gradient(cell);
-    compliance_[static_cast<Eigen::Index>(c)] = cell.volume() / kappa;
+    const VolumeRow row(in_units(network_.cells.shape(c), l), parts.kappa);
+    gradient_.col(static_cast<Eigen::Index>(c)) = row.gradient;
+    compliance_[static_cast<Eigen::Index>(c)] = row.compliance;
   }
   std::vector<CutLevel> lattices = cut_levels(network_, nodes_);
   const double finest_edge = lattices[0].edge;
@@ -264,11 +347,12 @@ CutMixedMultigrid::CutMixedMultigrid(const MassSpringModel& model, const std::ve
                   lattice);
       coarsest_.factor(lattice.A.sparse());
     }
-    CutMatrix<double> of_cells(averaged_cells(springs, lattice), unit, lattice, fixed_here);
+    CutMatrix<double> of_cells(averaged_cells(parts.springs, lattice), unit, lattice, fixed_here);
     take_matrix(of_cells, unit, fixed_here, lattice);
     if (finest) K_ = std::move(of_cells);
-    levels_.push_back(std::make_unique<Level>(
-        std::move(lattice), finest ? nodes_.unknowns_of_corners() : std::vector<char>{}, finest_edge, kappa));
+    levels_.push_back(
+        std::make_unique<Level>(std::move(lattice), finest ? nodes_.unknowns_of_corners() : std::vector<char>{}));
+    levels_.back()->set_volumes(finest_edge, parts.kappa, schur_sweeps);
   }
   for (Anchor& a : nodes_.anchors) a.stiffness /= unit;
 }

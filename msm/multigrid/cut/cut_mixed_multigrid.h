@@ -8,8 +8,9 @@
 
 namespace springproof {
 
-/// The saddle-point system  [K_s B^T; B -C] (u, p) = (f, g)  of averaged springs and anchors K_s (nu = 1/4 but for the
-/// hourglass stiffness) and one pressure per cell, p = kappa / (alpha V) B u; kappa > 0.  Inexact Braess-Sarazin
+/// The saddle-point system  [K_s B^T; B -C] (u, p) = (f, g)  of averaged springs, anchors and bonds K_s (nu = 1/4 but
+/// for the hourglass stiffness) and one pressure per cell, p = kappa / (alpha V) B u, of materials with kappa > 0
+/// (mixed_parts); in cells of others p = 0.  Inexact Braess-Sarazin
 /// smoothing: Gauss-Seidel over the nodes, then pressures that restore the volumes.  u and f are of all nodes of the
 /// network.  Units: shear modulus and edge of the finest cells.
 class CutMixedMultigrid : public SaddlePoint {

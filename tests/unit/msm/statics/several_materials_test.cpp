@@ -3,12 +3,15 @@
 
 #include "msm/distribution/model_part.h"
 #include "msm/dynamics/natural_modes.h"
+#include "msm/dynamics/time_step.h"
 #include "msm/embedding/supports.h"
+#include "msm/exchange/springs_document.h"
 #include "msm/laws/capabilities.h"
 #include "msm/models.h"
 #include "msm/multigrid/cut/cut_levels.h"
 #include "msm/statics/equilibrium.h"
 #include "msm/statics/mixed_form.h"
+#include "msm/statics/mixed_newton.h"
 #include "support/tolerances.h"
 #include "support/two_materials.h"
 #include "support/zoo.h"
@@ -28,10 +31,10 @@ BoundaryConditions no_conditions(const Network& network) {
 }
 
 Equilibrium solved(const MassSpringModel& model, const BoundaryConditions& bc,
-                   LinearSolver solver = LinearSolver::cholesky) {
+                   LinearSolver solver = LinearSolver::cholesky, double tolerance = 1e-8) {
   LinearOptions options;
   options.solver = solver;
-  options.tolerance = solver == LinearSolver::cholesky ? 1e-12 : 1e-8;
+  options.tolerance = solver == LinearSolver::cholesky ? 1e-12 : tolerance;
   Equilibrium e = solve_linear(model, bc, options);
   EXPECT_TRUE(e.ok) << e.message;
   return e;
@@ -129,7 +132,7 @@ struct Ball {
       cut_body({Vec3::Constant(-2), 2.0 / across, {2 * across, 2 * across, 2 * across}}, test::ball_in_cube(8, centre)),
       {exact.around, exact.inside});
 
-  Equilibrium solve(LinearSolver solver) const {
+  Equilibrium solve(LinearSolver solver, double tolerance = 1e-8) const {
     const Network& network = model.network;
     BoundaryConditions bc = no_conditions(network);
     for (int n = 0; n < network.nodes(); ++n) {
@@ -138,7 +141,7 @@ struct Ball {
       bc.prescribed.row(n) = exact.displacement(x - centre).transpose();
       std::fill_n(bc.fixed.begin() + 3 * n, 3, 1);
     }
-    return solved(model, bc, solver);
+    return solved(model, bc, solver, tolerance);
   }
 
   /// Mean strain inside.
@@ -183,7 +186,8 @@ TEST(SeveralMaterials, OfTheSameModuliAreNearlyOneMaterial) {
 }
 
 /// Iterations of multigrid for the ball in a cube that stands on a face and is pulled askew at the opposite one.
-int iterations(const Mesh& body, const std::vector<IsotropicMaterial>& materials) {
+int iterations(const Mesh& body, const std::vector<IsotropicMaterial>& materials,
+               LinearSolver solver = LinearSolver::multigrid) {
   const CutBody cut = cut_body({Vec3::Constant(-2), 0.5, {8, 8, 8}}, body);
   const Mesh cubes = voxelise(cut.grid, body).mesh;
   const EmbeddedModel built = build_cut(test::model("hybmss_avg"), cut, {"z_min"}, cubes, materials[0],
@@ -191,7 +195,7 @@ int iterations(const Mesh& body, const std::vector<IsotropicMaterial>& materials
   const BoundaryConditions bc =
       transfer({PrescribedDisplacement{"z_min", {0.0, 0.0, 0.0}}, PatchForce{"z_max", Vec3(0.3, 0, 1)}}, cubes,
                built.embedding, built.model.network, 1, Kinematics::linear);
-  return solved(built.model, bc, LinearSolver::multigrid).iterations;
+  return solved(built.model, bc, solver).iterations;
 }
 
 TEST(SeveralMaterials, TakeTheIterationsOfOne) {
@@ -201,6 +205,31 @@ TEST(SeveralMaterials, TakeTheIterationsOfOne) {
   const int least = iterations(of_one, {{1, 0.3, 1}});
   for (const double contrast : {1e-4, 1e-2, 1.0, 1e2, 1e4})
     EXPECT_LE(iterations(body, {{1, 0.3, 1}, {contrast, 0.3, 1}}), 1.5 * least) << contrast;
+}
+
+// In displacements alone the first three take 20, 159 and 167.
+TEST(SeveralMaterials, TakeTheIterationsOfOneInMixedForm) {
+  const Mesh body = test::ball_in_cube(8, {0.055, 0.025, -0.085});
+  Mesh of_one = body;
+  of_one.materials.clear();
+  const int least = iterations(of_one, {{1, 0.499, 1}}, LinearSolver::mixed_multigrid);
+  const IsotropicMaterial soft{1, 0.3, 1}, liquid{1, 0.499, 1}, stiff{100, 0.3, 1}, hollow{1, 0.2, 1};
+  for (const auto& [around, inside] :
+       {std::pair{soft, liquid}, {liquid, soft}, {liquid, stiff}, {liquid, hollow}, {stiff, soft}})
+    EXPECT_LE(iterations(body, {around, inside}, LinearSolver::mixed_multigrid), 1.6 * least)
+        << around.poisson_ratio << ' ' << inside.youngs_modulus;
+}
+
+TEST(SeveralMaterials, AreTheSameInMixedForm) {
+  const IsotropicMaterial soft{1, 0.3, 1}, liquid{1, 0.499, 1}, stiff{100, 0.499, 1}, hollow{1, 0.2, 1};
+  for (const auto& [around, inside] : {std::pair{soft, liquid}, {liquid, soft}, {liquid, hollow}, {soft, stiff}}) {
+    const Ball ball{{around, inside, tension}, 4, {0.11, 0.05, -0.17}};
+    EXPECT_TRUE(mixed_form_pays(ball.model));
+    const NodalVectors direct = ball.solve(LinearSolver::cholesky).displacement,
+                       mixed = ball.solve(LinearSolver::mixed_multigrid, 1e-10).displacement;
+    EXPECT_LE((mixed - direct).norm(), 1e-7 * direct.norm()) << around.poisson_ratio << ' ' << inside.youngs_modulus;
+  }
+  EXPECT_FALSE(mixed_form_pays(Ball{{soft, {1e4, 0.3, 1}, tension}, 2, Vec3::Zero()}.model));
 }
 
 // Of cells of two sizes, in a field at random.
@@ -316,6 +345,29 @@ TEST(SeveralMaterials, NearlyIncompressibleOnesAreInSeriesAtLargeStrain) {
   }
 }
 
+// With the pressures of one layer, where nu = 1/4 leaves none to the other.
+TEST(SeveralMaterials, AreTheSameInMixedFormAtLargeStrain) {
+  const CutBody cut =
+      cut_body({Vec3::Zero(), 1.0 / 3, {12, 6, 6}}, test::layered_block({length, 2, 2}, {12, 6, 6}, 0, 1.3));
+  const MassSpringModel model = model_of(cut, {{1, 0.2, 1}, {2, 0.499, 1}});
+  const Network& network = model.network;
+  BoundaryConditions bc = no_conditions(network);
+  for (int n = 0; n < network.nodes(); ++n) {
+    const bool end = network.X(n, 0) > length - 1e-9;
+    std::fill_n(bc.fixed.begin() + 3 * n, 3, end || network.X(n, 0) < 1e-9);
+    if (end) bc.prescribed.row(n) << 0.4, 0.3, 0;
+  }
+  NodalVectors x = network.X;
+  ASSERT_TRUE(MixedNewton(model, bc.fixed).step(bc, 1e-9, 10, x));
+  const Equilibrium direct = solve_finite(model, [&](double factor) {
+    BoundaryConditions part = bc;
+    part.prescribed *= factor;
+    return part;
+  });
+  ASSERT_TRUE(direct.ok) << direct.message;
+  EXPECT_LE((x - network.X - direct.displacement).norm(), 1e-6 * direct.displacement.norm());
+}
+
 // Whose forces the rounding of positions changes by more than the tolerance of Newton's method.
 TEST(SeveralMaterials, ConvergeUnderSmallLoadsAtHighContrast) {
   const CutBody cut = cut_body({Vec3::Zero(), 1, {8, 2, 2}}, test::layered_block({8, 2, 2}, {8, 2, 2}, 0, 4));
@@ -359,10 +411,134 @@ TEST(SeveralMaterials, AreRefusedByWhatKnowsOne) {
   const MassSpringModel model = model_of(cut, {one, {2, 0.3, 1000}});
   EXPECT_FALSE(can(model, Capability::mass_average));
   EXPECT_THROW(part_of(model, std::vector<char>(model.network.nodes(), 1)), std::invalid_argument);
-  const Mesh cubes = voxelise(cut.grid, test::layered_block({length, 2, 2}, {4, 2, 2}, 0, 1.3)).mesh;
-  EXPECT_THROW(build_embedded(test::model("hybmss"), cubes, one), InputError);
   EXPECT_THROW(model_of(cut, {one}), InputError);
-  EXPECT_THROW(saddle_point_at_rest(model, std::vector<char>(model.network.X.size(), 0)), std::runtime_error);
+}
+
+/// A block of cubes of edge 1/2, material 1 above `at` along an axis.
+Mesh layered_cubes(int axis, double at) {
+  Mesh cubes = block_mesh({length, 2, 2}, {8, 4, 4});
+  for (const Hexahedron& cube : cubes.hexahedra)
+    cubes.materials.push_back((cubes.nodes(cube[0], axis) + cubes.nodes(cube[6], axis)) / 2 > at);
+  return cubes;
+}
+
+MassSpringModel whole_cubes(const std::string& model, const Mesh& cubes, const IsotropicMaterial& own,
+                            const IsotropicMaterial& other) {
+  return build_embedded(test::model(model), cubes, own, nullptr, {other}).model;
+}
+
+/// Poisson's ratios of a model in two materials: of springs alone 1/4.
+std::array<double, 2> ratios_of(const std::string& model) {
+  return own_poisson_ratio(test::model(model).row) ? std::array{0.25, 0.25} : std::array{0.3, 0.45};
+}
+
+const char* const of_whole_cubes[] = {"msm_18", "hybmss_cf", "hybmss", "hybmss_b", "hybmss_bt", "hybmss_avg"};
+
+TEST(SeveralMaterials, InWholeCubesAreExactInSeries) {
+  for (const std::string model : of_whole_cubes)
+    for (const double contrast : {1e-4, 50.0}) {
+      const auto [nu_a, nu_b] = ratios_of(model);
+      const IsotropicMaterial a{1, nu_a, 1}, b{contrast, nu_b, 1};
+      const double force = force_of_bar(whole_cubes(model, layered_cubes(0, 1.5), a, b), true),
+                   expected = 4 * pull / (1.5 / confined_modulus(a) + 2.5 / confined_modulus(b));
+      EXPECT_NEAR(force, expected, 1e-10 * expected) << model << ' ' << contrast;
+    }
+}
+
+TEST(SeveralMaterials, InWholeCubesAreExactInParallel) {
+  for (const std::string model : of_whole_cubes)
+    for (const double contrast : {1e-3, 50.0}) {
+      const double nu = ratios_of(model)[0],
+                   force =
+                       force_of_bar(whole_cubes(model, layered_cubes(2, 0.5), {1, nu, 1}, {contrast, nu, 1}), false),
+                   expected = 2 * (0.5 + 1.5 * contrast) * pull / length;
+      EXPECT_NEAR(force, expected, 1e-10 * expected) << model << ' ' << contrast;
+    }
+}
+
+// Cubes of the majority's material, four across a ball: a third off in its stress, rms over places in the lattice.
+TEST(SeveralMaterials, InWholeCubesAreOffByTheStepsOfTheInterface) {
+  const VoxelGrid grid{Vec3::Constant(-2), 0.5, {8, 8, 8}};
+  const std::vector<Vec3> centres = {{0.11, 0.05, -0.17}, {0.2, -0.1, 0.02}, {-0.05, 0.22, 0.13}, {0, 0, 0}};
+  for (const auto& [far, expected] : {std::pair(tension, 0.32), std::pair(pressure, 0.19)}) {
+    const test::BallInSpace exact{{1, 0.3, 1}, {10, 0.3, 1}, far};
+    double squares = 0;
+    for (const Vec3& centre : centres) {
+      const Mesh cubes = voxelise(grid, test::ball_in_cube(8, centre)).mesh;
+      const Ball ball{exact, 4, centre, whole_cubes("hybmss_avg", cubes, exact.around, exact.inside)};
+      squares += std::pow(ball.stress_error(ball.solve(LinearSolver::cholesky)), 2) / 4;
+    }
+    EXPECT_NEAR(std::sqrt(squares), expected, 0.3 * expected) << far(2, 2);
+  }
+}
+
+TEST(SeveralMaterials, InWholeCubesHaveTheForcesOfTheirEnergy) {
+  for (const std::string model : {"hybmss", "hybmss_bt", "hybmss_avg"}) {
+    const MassSpringModel of_two = whole_cubes(model, layered_cubes(0, 1.5), {1, 0.2, 1}, {20, 0.4, 1});
+    const Network& network = of_two.network;
+    const NodalVectors x = network.X + test::noise(network.nodes(), 0.05, 1), d = test::noise(network.nodes(), 1, 2);
+    const double h = 1e-5, slope = (energy(of_two, x + h * d) - energy(of_two, x - h * d)) / (2 * h),
+                 expected = -forces(of_two, x).cwiseProduct(d).sum();
+    EXPECT_NEAR(slope, expected, test::finite_difference * std::abs(expected)) << model;
+    Eigen::VectorXd Kd;
+    tangent(of_two, x).multiply(flat(d), Kd);
+    const Eigen::VectorXd change = flat(forces(of_two, x - h * d) - forces(of_two, x + h * d)) / (2 * h);
+    EXPECT_LE((Kd - change).norm(), test::finite_difference * Kd.norm()) << model;
+  }
+}
+
+// The stiff and light layer has the fastest modes.
+TEST(SeveralMaterials, InWholeCubesHaveASafeStep) {
+  for (const std::string model : {"hybmss_cf", "hybmss", "hybmss_bt", "hybmss_avg"}) {
+    const double nu = ratios_of(model)[0];
+    const MassSpringModel of_two = whole_cubes(model, layered_cubes(0, 1.5), {1, nu, 3}, {100, nu, 1});
+    const Network& network = of_two.network;
+    const Eigen::VectorXd mass = masses(network, 3);
+    Eigen::VectorXd v = flat(test::noise(network.nodes(), 1, 1)), Kv;
+    const Tangent K = tangent(of_two, network.X);
+    double square = 0;  // of the largest frequency, by power iteration
+    for (int i = 0; i < 400; ++i) {
+      K.multiply(v, Kv);
+      for (Eigen::Index n = 0; n < v.size(); ++n) Kv[n] /= mass[n / 3];
+      square = Kv.norm() / v.norm();
+      v = Kv / Kv.norm();
+    }
+    const double step = safe_time_step(of_two, 3), largest = 2 / std::sqrt(square);
+    EXPECT_LE(step, 1.001 * largest) << model;
+    EXPECT_GE(step, 0.3 * largest) << model;
+  }
+}
+
+TEST(SeveralMaterials, InWholeCubesWeighByTheirDensities) {
+  const Mesh cubes = layered_cubes(0, 1.5);
+  const EmbeddedModel built = build_embedded(test::model("hybmss"), cubes, {1, 0.3, 1000}, nullptr, {{1, 0.3, 3000}});
+  EXPECT_NEAR(masses(built.model.network, 1000).sum(), 4 * (1.5 * 1000 + 2.5 * 3000), 1e-8);
+  const NodalVectors weight =
+      transfer({Gravity{Vec3(0, 0, -10)}}, cubes, built.embedding, built.model.network, 1000, Kinematics::linear)
+          .external;
+  double lower = 0;
+  for (int n = 0; n < built.model.network.nodes(); ++n)
+    if (built.model.network.X(n, 0) < 1.5 - 1e-9) lower += weight(n, 2);
+  EXPECT_NEAR(weight.col(2).sum(), -40 * (1.5 * 1000 + 2.5 * 3000), 1e-6);
+  EXPECT_NEAR(lower, -40 * 1.25 * 1000, 1e-6);  // but half of the cubes at the interface
+}
+
+TEST(SeveralMaterials, InWholeCubesAreRefusedByWhatKnowsOne) {
+  const Mesh cubes = layered_cubes(0, 1.5);
+  const IsotropicMaterial one{1, 0.25, 1000}, other{2, 0.25, 1000};
+  for (const std::string model : {"emsm", "msm_centred", "msm_random", "emsm_random"})
+    EXPECT_THROW(whole_cubes(model, cubes, one, other), InputError) << model;
+  EXPECT_THROW(build_embedded(test::model("hybmss"), cubes, one), InputError);
+  Mesh of_three = cubes;
+  of_three.materials.front() = 2;
+  EXPECT_THROW(whole_cubes("hybmss", of_three, one, other), InputError);
+  const MassSpringModel model = whole_cubes("hybmss", cubes, one, other);
+  for (const Capability what :
+       {Capability::lattice_kernels, Capability::gpu, Capability::equal_cells, Capability::viscosity})
+    EXPECT_FALSE(can(model, what)) << name_of(what);
+  SpringsFile file;
+  file.model = model;
+  EXPECT_THROW(document_of(file), std::invalid_argument);
 }
 
 TEST(SeveralMaterials, HaveTheirOwnDensities) {
