@@ -186,6 +186,10 @@ void compare(const FrequencyTable& table, const Eigen::VectorXd& weights, ModelF
 
 ModelFrequencies frequencies_of(const PreparedCase& prepared, const Lattice& lattice, std::size_t number, double theta,
                                 const IsotropicMaterial& material, int modes) try {
+  if (prepared.models[number].springs && prepared.experiment.relaxation.acts())
+    throw InputError(prepared.experiment.models[number].where,
+                     "compare.models: the springs of a file have one stiffness, which is not that of a vibration where "
+                     "they relax (allowed beside [material.relaxation]: models by name)");
   ModelFrequencies out;
   out.label = prepared.experiment.models[number].label;
   out.consistency = theta;
