@@ -140,9 +140,9 @@ void CellForces<Real>::add_blocks(long begin, long end, const Padded<Real>* x, c
   add_bonds(begin, end, x, f);
 }
 
-/// Of blocks of one material.
+/// Blocks of one material.
 template <class Real>
-void CellForces<Real>::add_cells(long begin, long end, const Padded<Real>* x, const Padded<Real>* s, Padded<Real>* f) {
+CellList<Real> CellForces<Real>::part_of_list(long begin, long end) {
   CellList<Real> list = list_;
   list.springs = constants_[order_.material[begin]].springs;
   list.dashpots = constants_[order_.material[begin]].dashpots;
@@ -154,8 +154,16 @@ void CellForces<Real>::add_cells(long begin, long end, const Padded<Real>* x, co
     list.branch_count = static_cast<int>(branches_.size());
     list.branches = branches_.data();
     list.overstrains = overstrains_.data() + overstrain_count * kernels_->cell_list.cells * list.branch_count * begin;
+  }
+  return list;
+}
+
+template <class Real>
+void CellForces<Real>::add_cells(long begin, long end, const Padded<Real>* x, const Padded<Real>* s, Padded<Real>* f) {
+  const CellList<Real> list = part_of_list(begin, end);
+  if (relaxing())
     kernels_->cell_list.relaxing_forces(list, x, viscous_ ? s : nullptr, f);
-  } else if (viscous_)
+  else if (viscous_)
     kernels_->cell_list.viscous_forces(list, x, s, f);
   else
     kernels_->cell_list.forces(list, x, f);
@@ -193,8 +201,9 @@ void CellForces<Real>::add_bonds(long begin, long end, const Padded<Real>* x, Pa
   }
 }
 
+/// Into x_ and s_.
 template <class Real>
-void CellForces<Real>::add(const Padded<Real>* x, const Padded<Real>* s, Padded<Real>* f, bool) {
+void CellForces<Real>::place_carried(const Padded<Real>* x, const Padded<Real>* s) {
   const std::size_t nodes = order_.place.size();
   x_.assign(x, x + nodes);
   if (viscous_) s_.assign(s, s + nodes);
@@ -210,6 +219,11 @@ void CellForces<Real>::add(const Padded<Real>* x, const Padded<Real>* s, Padded<
     x_[c.point] = u;
     if (viscous_) s_[c.point] = v;
   }
+}
+
+template <class Real>
+void CellForces<Real>::add(const Padded<Real>* x, const Padded<Real>* s, Padded<Real>* f, bool) {
+  place_carried(x, s);
   add_blocks(0, order_.plan.blocks, x_.data(), s_.data(), f);
   for (auto c = carried_.rbegin(); c != carried_.rend(); ++c)
     for (int d = 0; d < 3; ++d) {
@@ -253,6 +267,18 @@ void CellForces<Real>::add_relaxing(const Padded<Real>* x, Padded<Real>* f) {
   overstrains_ = kept;
   for (std::size_t p = 0; p < with.size(); ++p)
     for (int d = 0; d < 3; ++d) f[p].v[d] += with[p].v[d] - without[p].v[d];
+}
+
+template <class Real>
+std::vector<double> CellForces<Real>::branch_energies(const Padded<Real>* x) {
+  std::vector<double> stored(branches_.size(), 0);
+  if (coupled()) {
+    const std::vector<Padded<Real>> still(order_.place.size(), Padded<Real>{});
+    place_carried(x, still.data());
+    x = x_.data();
+  }
+  kernels_->cell_list.branch_energies(part_of_list(0, order_.plan.blocks), x, stored.data());
+  return stored;
 }
 
 template <class Real>

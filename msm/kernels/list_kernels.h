@@ -145,6 +145,8 @@ struct CellListKernels {
   void (*viscous_forces)(const CellList<Real>&, const Padded<Real>* u, const Padded<Real>* s, Padded<Real>* f);
   /// The same with branches, whose overstrains become those of the end of the step; null s: no dashpots.
   void (*relaxing_forces)(const CellList<Real>&, const Padded<Real>* u, const Padded<Real>* s, Padded<Real>* f);
+  /// stored += energies [J] of the branches, one of each, at displacements u at the end of a step.
+  void (*branch_energies)(const CellList<Real>&, const Padded<Real>* u, double* stored);
 };
 
 }  // namespace springproof

@@ -202,13 +202,11 @@ SPRINGPROOF_INLINE void measured_stress(const Real* form, const Cells<Real>& cel
   }
 }
 
-/// Sums of the branches' overstrains by their shares, of twice the strain (entries strain_of) and of v, which P of the
-/// next step takes from these.
+/// What branches follow: twice the deviatoric strain (entries strain_of), and v.
 template <class Real>
-SPRINGPROOF_INLINE void relax(const CellList<Real>& list, Real* P, const Lanes<Real> (&D)[3][3],
-                              const Lanes<Real> (&v)[4][3], Lanes<Real> (&Z)[overstrain_count]) {
+SPRINGPROOF_INLINE void strains_of_branches(const Lanes<Real> (&D)[3][3], const Lanes<Real> (&v)[4][3],
+                                            Lanes<Real> (&z)[overstrain_count]) {
   using V = Lanes<Real>;
-  V z[overstrain_count];
   for (int e = 0; e < 6; ++e) {
     const int i = strain_of[e][0], j = strain_of[e][1];
     z[e] = (D[i][j] + D[j][i]) + (D[0][i] * D[0][j] + D[1][i] * D[1][j] + D[2][i] * D[2][j]);
@@ -217,6 +215,15 @@ SPRINGPROOF_INLINE void relax(const CellList<Real>& list, Real* P, const Lanes<R
   for (int e = 0; e < 3; ++e) z[e] -= mean;
   for (int m = 0; m < 4; ++m)
     for (int j = 0; j < 3; ++j) z[6 + 3 * m + j] = v[m][j];
+}
+
+/// Sums of the branches' overstrains by their shares, which P of the next step takes from these.
+template <class Real>
+SPRINGPROOF_INLINE void relax(const CellList<Real>& list, Real* P, const Lanes<Real> (&D)[3][3],
+                              const Lanes<Real> (&v)[4][3], Lanes<Real> (&Z)[overstrain_count]) {
+  using V = Lanes<Real>;
+  V z[overstrain_count];
+  strains_of_branches<Real>(D, v, z);
   for (V& sum : Z) sum = 0;
   for (int b = 0; b < list.branch_count; ++b) {
     const auto [share, decay, phi] = list.branches[b];
@@ -226,6 +233,24 @@ SPRINGPROOF_INLINE void relax(const CellList<Real>& list, Real* P, const Lanes<R
       store<Real>(decay * Q - now, P);
     }
   }
+}
+
+/// Energy over the edge of overstrains Q of a share of 1.
+template <class Real>
+SPRINGPROOF_INLINE Lanes<Real> energy_of(const LatticeAveraged<Lanes<Real>>& law, const Cells<Real>& c,
+                                         const Lanes<Real> (&Q)[overstrain_count]) {
+  using V = Lanes<Real>;
+  V square = 0, of_patterns = 0, v[4][3], w[4][3];
+  for (int e = 0; e < 6; ++e) square += (e < 3 ? Real(1) : Real(2)) * Q[e] * Q[e];
+  for (int m = 0; m < 4; ++m)
+    for (int j = 0; j < 3; ++j) {
+      v[m][j] = Q[6 + 3 * m + j];
+      w[m][j] = 0;
+    }
+  add_hourglass_forces(law, c, v, w);
+  for (int m = 0; m < 4; ++m)
+    for (int j = 0; j < 3; ++j) of_patterns += v[m][j] * w[m][j];
+  return Real(0.25) * law.shear * square + Real(0.5) * of_patterns;
 }
 
 /// P += G F Z, w += (hourglass springs) Z.
@@ -347,6 +372,37 @@ void relaxing_forces(const CellList<Real>& list, const Padded<Real>* u, const Pa
   s ? forces_of_curve<true, true>(list, u, s, f) : forces_of_curve<false, true>(list, u, s, f);
 }
 
+/// Adds the energies of the branches of a vector of cells.
+template <class Real>
+SPRINGPROOF_INLINE void add_branch_energies(const CellList<Real>& list, long block, int at, const Corners<Real>& u,
+                                            double* stored) {
+  using V = Lanes<Real>;
+  const Cells<Real> c(list.numbers + cell_number::count * cells<Real> * block + at);
+  V D[3][3], S[3][4], F[3][3], v[4][3], z[overstrain_count], Q[overstrain_count];
+  patterns_of_cells<Real>(u, at, c, D, S);
+  if (list.boxes) stretch(list, D, S);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) F[i][j] = i == j ? D[i][j] + Real(1) : D[i][j];
+  turned_back(F, S, v);
+  strains_of_branches<Real>(D, v, z);
+  const Real* P = list.overstrains + overstrain_count * cells<Real> * list.branch_count * block + at;
+  for (int b = 0; b < list.branch_count; ++b) {
+    for (int e = 0; e < overstrain_count; ++e, P += cells<Real>) Q[e] = load(P) + list.branches[b].phi * z[e];
+    const V energy = list.branches[b].share * energy_of(times_area(list.relaxing, c.area), c, Q) / c.per_edge;
+    stored[b] += double(stdx::reduce(energy));
+  }
+}
+
+template <class Real>
+void branch_energies(const CellList<Real>& list, const Padded<Real>* u, double* stored) {
+  alignas(64) Corners<Real> at;
+  for (long b = 0; b < list.blocks; ++b) {
+    const int* places = list.corners + 8 * cells<Real> * b;
+    for (int n = 0; n < 8; ++n) gather<3>(u, places + n * cells<Real>, at[n]);
+    for (int lane = 0; lane < cells<Real>; lane += lanes<Real>) add_branch_energies<Real>(list, b, lane, at, stored);
+  }
+}
+
 }  // namespace
 
 template <class Real>
@@ -354,7 +410,8 @@ CellListKernels<Real> cell_list_kernels() {
   return {.cells = cells<Real>,
           .forces = forces<Real>,
           .viscous_forces = forces_of_curve<true, false, Real>,
-          .relaxing_forces = relaxing_forces<Real>};
+          .relaxing_forces = relaxing_forces<Real>,
+          .branch_energies = branch_energies<Real>};
 }
 
 template CellListKernels<double> cell_list_kernels();

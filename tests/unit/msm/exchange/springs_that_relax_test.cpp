@@ -48,13 +48,13 @@ SpringsFile cut() {
       build_cut(test::model("hybmss_avg"), cut_body(test::grid_about(body, 1.0 / 3), body), {}, Mesh{}, rubber).model);
 }
 
-/// A weight of the nodes sideways, nothing held: the body bends and creeps as it falls.
+/// A weight of the nodes up and down, nothing held: the body bends and creeps.
 BoundaryConditions pulled(const Network& network) {
   BoundaryConditions bc;
   bc.fixed.assign(network.X.size(), 0);
   bc.owner.assign(network.X.size(), -1);
   bc.prescribed = bc.external = NodalVectors::Zero(network.X.rows(), 3);
-  for (Eigen::Index n = 0; n < network.X.rows(); ++n) bc.external(n, 2) = n % 3 == 0 ? 20 : -9;
+  for (Eigen::Index n = 0; n < network.X.rows(); ++n) bc.external(n, 2) = network.volume[n] * (n % 3 == 0 ? 160 : -72);
   return bc;
 }
 
