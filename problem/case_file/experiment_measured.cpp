@@ -75,6 +75,8 @@ MeasuredValue read_quantity(const TomlTable& table, const Experiment& e) {
   MeasuredValue m{.name = read_own_name(table.at("name"), e.measured),
                   .quantity = read_row_name(table.at("quantity"), e),
                   .where = location_of(table.at("quantity"))};
+  if (std::any_of(e.measured.begin(), e.measured.end(), [&](const auto& other) { return other.history == m.name; }))
+    refuse(table.at("name"), fmt::format("'{}' is the name of a history", m.name), "a name of its own");
   if (is_distance(m.quantity) || is_deviation(m.quantity))
     refuse(table.at("quantity"), fmt::format("'{}' is a difference between computations", m.quantity),
            "a quantity that can be measured");
