@@ -266,13 +266,23 @@ template class ListMotion<float>;
 
 namespace {
 
+/// Whether kernels have the branches: beside averaged springs those whose long-time moduli are theirs but for bending.
+bool kernels_relax(const MassSpringModel& model, const RelaxingCells& relaxing) {
+  const AveragedSprings* own = averaged_springs_of(model);
+  if (!own || !relaxing.acts()) return true;
+  const HourglassStiffness &a = own->hourglass, &b = relaxing.cells.hourglass;
+  return own->shear_modulus == relaxing.cells.shear_modulus && a.torsion == b.torsion && a.twist == b.twist &&
+         a.warping == b.warping && a.bending > std::abs(a.coupling);
+}
+
 template <class Real>
 std::unique_ptr<BlockForces<Real>> block_forces(const MassSpringModel& model, const MotionOptions& options) {
   if (options.mass_consistency > 0 && options.viscosity.acts()) return nullptr;
   const std::vector<Anchor>& anchors = model.network.anchors;  // one support mass for all axes of a node
   if (std::any_of(anchors.begin(), anchors.end(), [](const Anchor& a) { return a.axes != 7; })) return nullptr;
   const AveragedSprings& dashpots = options.viscosity.cells();
-  if (can(model, Capability::cell_kernels) && !options.viscosity.along_springs() && dashpots.shift == 0) {
+  if (can(model, Capability::cell_kernels) && !options.viscosity.along_springs() && dashpots.shift == 0 &&
+      kernels_relax(model, options.relaxation)) {
     auto cells = std::make_unique<CellForces<Real>>(model, options.instructions, dashpots, options.viscosity.time());
     cells->set_branches(options.relaxation.relaxation, options.relaxation.cells, options.time_step.value());
     return cells;

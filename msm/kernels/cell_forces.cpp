@@ -239,7 +239,15 @@ void CellForces<Real>::set_branches(const Relaxation& relaxation, const Averaged
   branches_.clear();
   for (const auto& [share, time] : relaxation.branches) {
     const BranchStep step = BranchStep::of(time_step / time);
-    branches_.push_back({static_cast<Real>(share), static_cast<Real>(step.decay), static_cast<Real>(step.phi)});
+    const double gain = share * step.phi, lost = -std::expm1(-time_step / time);
+    branches_.push_back({static_cast<Real>(share), static_cast<Real>(step.decay), static_cast<Real>(gain),
+                         static_cast<Real>(gain * lost)});
+  }
+  if (forms_.empty() && relaxing()) {
+    const LatticeAveraged<Real>& own = constants_[0].springs;
+    const double b = own.bending, k = own.coupling, of_b = list_.relaxing.bending, of_k = list_.relaxing.coupling;
+    list_.bending_of_branches.own = static_cast<Real>((b * of_b - k * of_k) / (b * b - k * k));
+    list_.bending_of_branches.other = static_cast<Real>((b * of_k - k * of_b) / (b * b - k * k));
   }
   overstrains_.assign(overstrain_count * kernels_->cell_list.cells * branches_.size() * order_.plan.blocks, Real(0));
 }
@@ -247,11 +255,16 @@ void CellForces<Real>::set_branches(const Relaxation& relaxation, const Averaged
 template <class Real>
 void CellForces<Real>::relax(const Padded<Real>* x) {
   const std::vector<CellBranch<Real>> kept = branches_;
-  for (CellBranch<Real>& branch : branches_) branch.decay = 0;  // P = -phi E whatever it was
+  for (CellBranch<Real>& branch : branches_) branch.decay = 0;  // P = E whatever it was
   const std::vector<Padded<Real>> still(order_.place.size(), Padded<Real>{});
   std::vector<Padded<Real>> unused = still;
   add(x, still.data(), unused.data(), false);
   branches_ = kept;
+  const std::size_t of_branch = overstrain_count * kernels_->cell_list.cells;
+  for (std::size_t i = 0; i < overstrains_.size(); ++i) {  // gain E = loss P
+    const CellBranch<Real>& branch = branches_[i / of_branch % branches_.size()];
+    overstrains_[i] *= branch.gain / branch.loss;
+  }
 }
 
 template <class Real>
@@ -261,7 +274,7 @@ void CellForces<Real>::add_relaxing(const Padded<Real>* x, Padded<Real>* f) {
   const std::vector<Padded<Real>> still(order_.place.size(), Padded<Real>{});
   std::vector<Padded<Real>> with = still, without = still;
   add(x, still.data(), with.data(), false);
-  for (CellBranch<Real>& branch : branches_) branch.share = 0;
+  for (CellBranch<Real>& branch : branches_) branch.gain = branch.loss = 0;
   add(x, still.data(), without.data(), false);
   branches_ = branches;
   overstrains_ = kept;

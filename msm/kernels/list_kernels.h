@@ -109,13 +109,15 @@ constexpr int area = 0, mean = 1, mixed = 4, variance = 7, per_edge = 10, count 
 constexpr int of_form = 171;  ///< MeasuredCells
 }  // namespace cell_number
 
-/// A branch that relaxes, over a step (problem/relaxation.h).
+/// A branch that relaxes, over a step (problem/relaxation.h): of strains E it keeps P, P <- decay P + E, and share Q =
+/// gain E - loss P before that, at the end of the step; gain = share phi, loss = gain (1 - decay).
 template <class Real>
 struct CellBranch {
-  Real share, decay, phi;
+  Real share, decay, gain, loss;
 };
-constexpr int overstrain_count = 18;  ///< numbers P of a branch of a cell, Q = P + phi E at the end of a step: of twice
-                                      ///< the deviatoric strain and of the hourglass components over the edge [1]
+/// Strains that branches follow: twice the deviatoric strain, whose third entry is minus the first two, and the
+/// hourglass components over the edge [1].
+constexpr int overstrain_count = 17;
 
 /// Cells in blocks of as many as a kernel computes together; an unused place of the last block repeats a cell without
 /// volume.
@@ -128,6 +130,11 @@ struct CellList {
   LatticeAveraged<Real> springs = {};   ///< moduli, hourglass stiffness times G / 8 [Pa]; of measured cells no curve
   LatticeAveraged<Real> dashpots = {};  ///< the same times the time of retardation [s]; without a curve
   LatticeAveraged<Real> relaxing = {};  ///< long-time moduli of the branches; without a curve
+  /// Of branches beside averaged springs, whose long-time moduli but for bending are theirs: bending modes of
+  /// overstrains V resist as `own` V + `other` (V of the other mode of the plane) of the springs would.
+  struct {
+    Real own = 1, other = 0;
+  } bending_of_branches = {};
   int branch_count = 0;
   const CellBranch<Real>* branches = nullptr;
   Real* overstrains = nullptr;      ///< per block and branch each of overstrain_count in turn
