@@ -272,13 +272,14 @@ void check_plane(const PreparedCase& prepared, const Lattice& lattice) {
 void check_masses(const Experiment& e, const Mesh& mesh) {
   if (e.body.is_voxels()) return;  // whose cells may end below the surface
   const Locator locator(mesh);
-  for (const AttachedMass& mass : e.masses)
-    for (const Vec3& X : mass.at)
+  for (std::size_t m = 0; m < e.masses.size(); ++m)
+    for (const Vec3& X : e.masses[m].at)
       if (!locator.find(X))
-        throw InputError({e.file.string(), 0, 0},
-                         fmt::format("mass '{}': at_m: the point ({:.6g}, {:.6g}, {:.6g}) m lies outside the body "
-                                     "(allowed: a point of the body, of {:.6g} x {:.6g} x {:.6g} m)",
-                                     mass.name, X[0], X[1], X[2], e.body.size[0], e.body.size[1], e.body.size[2]));
+        throw InputError(
+            e.mass_locations[m],
+            fmt::format("mass '{}': at_m: the point ({:.6g}, {:.6g}, {:.6g}) m lies outside the body "
+                        "(allowed: a point of the body, of {:.6g} x {:.6g} x {:.6g} m)",
+                        e.masses[m].name, X[0], X[1], X[2], e.body.size[0], e.body.size[1], e.body.size[2]));
 }
 
 /// @throws InputError at a model that is of one material, in a case of several.

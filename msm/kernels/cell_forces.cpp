@@ -260,7 +260,7 @@ void CellForces<Real>::relax(const Padded<Real>* x) {
   std::vector<Padded<Real>> unused = still;
   add(x, still.data(), unused.data(), false);
   branches_ = kept;
-  const std::size_t of_branch = overstrain_count * kernels_->cell_list.cells;
+  const std::size_t of_branch = overstrain_count * kernels_->cell_list.lanes;
   for (std::size_t i = 0; i < overstrains_.size(); ++i) {  // gain E = loss P
     const CellBranch<Real>& branch = branches_[i / of_branch % branches_.size()];
     overstrains_[i] *= branch.gain / branch.loss;

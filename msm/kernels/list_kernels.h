@@ -137,7 +137,7 @@ struct CellList {
   } bending_of_branches = {};
   int branch_count = 0;
   const CellBranch<Real>* branches = nullptr;
-  Real* overstrains = nullptr;      ///< per block and branch each of overstrain_count in turn
+  Real* overstrains = nullptr;      ///< per vector of cells and branch each of overstrain_count in turn
   bool boxes = false;               ///< full cells that are no cubes: l that of the cube of their volume, rho p_i^2
   Real proportions[3] = {1, 1, 1};  ///< CellSet::proportions
   Real per_proportion[3] = {1, 1, 1};
@@ -146,6 +146,7 @@ struct CellList {
 template <class Real>
 struct CellListKernels {
   int cells;  ///< of a block
+  int lanes;  ///< of a vector
   /// f += forces of the cells at displacements u [m].
   void (*forces)(const CellList<Real>&, const Padded<Real>* u, Padded<Real>* f);
   /// f += forces of springs and dashpots.  Velocities are s times the fourth number of u.

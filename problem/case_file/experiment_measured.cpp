@@ -134,6 +134,9 @@ void read_samples(const TomlValue& value, Experiment& e, const std::string& sour
   const Named unit = unit_in(e.units, unit_of(all.quantity));
   const TomlValue file = table.at("file");
   e.histories.push_back(std::filesystem::path(value.file).parent_path() / as_text(file));
+  if (!std::filesystem::exists(e.histories.back()))
+    refuse(file, fmt::format("there is no file {}", e.histories.back().string()),
+           "a history, NAME.csv beside the case");
   const std::vector<HistorySample> samples = read_history(e.histories.back(), unit.name);
   const auto from_end = table.find("from_end");
   const bool subtracted = from_end && as_flag(*from_end);

@@ -193,7 +193,7 @@ SPRINGPROOF_INLINE void times_form(const Real* form, const Lanes<Real> (&y)[18],
   }
 }
 
-/// P = dW/dF over the edge, and w of the patterns over their norm, of MeasuredCells; v = F^T S.
+/// P = dW/dF over the edge, and w += that of the patterns over their norm, of MeasuredCells; v = F^T S.
 template <class Real>
 SPRINGPROOF_INLINE void measured_stress(const Real* form, const Cells<Real>& cell, const Lanes<Real> (&D)[3][3],
                                         const Lanes<Real> (&F)[3][3], const Lanes<Real>& dilatation,
@@ -216,7 +216,7 @@ SPRINGPROOF_INLINE void measured_stress(const Real* form, const Cells<Real>& cel
     for (int j = 0; j < 3; ++j) y[6 + 3 * m + j] = (m < 3 ? Real(0.5) : Real(1)) * edge * v[m][j];
   times_form<Real>(form, y, s);
   for (int m = 0; m < 4; ++m)
-    for (int j = 0; j < 3; ++j) w[m][j] = (m < 3 ? Real(0.5) : Real(1)) * s[6 + 3 * m + j];
+    for (int j = 0; j < 3; ++j) w[m][j] += (m < 3 ? Real(0.5) : Real(1)) * s[6 + 3 * m + j];
   V T[3][3], FQ[3][3];
   for (int p = 0; p < 3; ++p)
     for (int q = p; q < 3; ++q) {  // in axes of the eigenvectors, times the divided difference of the half logarithm
@@ -268,9 +268,10 @@ SPRINGPROOF_INLINE void relax(const CellList<Real>& list, Real* P, const Lanes<R
   Real gain = 0;
   for (int b = 0; b < branches; ++b) gain += list.branches[b].gain;
   for (int e = 0; e < overstrain_count; ++e) {
-    Real* of_branch = P + e * cells<Real>;
+    Real* of_branch = P + e * lanes<Real>;
     V sum = gain * z[e];
-    for (int b = 0; b < branches; ++b, of_branch += overstrain_count * cells<Real>) {
+    for (int b = 0; b < branches; ++b, of_branch += overstrain_count * lanes<Real>) {
+      prefetch(of_branch + overstrain_count * lanes<Real> * branches);  // of the next vector
       const V before = load(of_branch);
       sum -= list.branches[b].loss * before;
       store<Real>(list.branches[b].decay * before + z[e], of_branch);
@@ -310,18 +311,29 @@ SPRINGPROOF_INLINE Lanes<Real> energy_of(const LatticeAveraged<Lanes<Real>>& law
   return Real(0.25) * law.shear * square + Real(0.5) * of_patterns;
 }
 
-/// P += G F Z.
-template <class Real>
-SPRINGPROOF_INLINE void add_relaxing_stress(const Lanes<Real>& shear, const Lanes<Real> (&F)[3][3],
-                                            const Lanes<Real> (&Z)[overstrain_count], Lanes<Real> (&P)[3][3]) {
-  Lanes<Real> stress[5];
+/// A step of the branches: their stress over the edge, P = G F Z, and w += forces of the hourglass springs of v and Z,
+/// of measured cells of Z.
+template <LatticeCurve curve, class Real>
+SPRINGPROOF_INLINE void add_branches(const CellList<Real>& list, Real* overstrains,
+                                     const LatticeAveraged<Lanes<Real>>& springs, const Cells<Real>& c,
+                                     const Lanes<Real> (&D)[3][3], const Lanes<Real> (&F)[3][3],
+                                     const Lanes<Real> (&v)[4][3], Lanes<Real> (&P)[3][3], Lanes<Real> (&w)[4][3]) {
+  using V = Lanes<Real>;
+  V Z[overstrain_count], of_patterns[4][3], stress[5];
+  relax(list, overstrains, D, v, Z);
+  const V shear = c.area * list.relaxing.shear;
   for (int e = 0; e < 5; ++e) stress[e] = shear * Z[e];
-  const Lanes<Real> third = -(stress[0] + stress[1]);
+  const V third = -(stress[0] + stress[1]);
   for (int i = 0; i < 3; ++i) {
-    P[i][0] += F[i][0] * stress[0] + F[i][1] * stress[4] + F[i][2] * stress[3];
-    P[i][1] += F[i][0] * stress[4] + F[i][1] * stress[1] + F[i][2] * stress[2];
-    P[i][2] += F[i][0] * stress[3] + F[i][1] * stress[2] + F[i][2] * third;
+    P[i][0] = F[i][0] * stress[0] + F[i][1] * stress[4] + F[i][2] * stress[3];
+    P[i][1] = F[i][0] * stress[4] + F[i][1] * stress[1] + F[i][2] * stress[2];
+    P[i][2] = F[i][0] * stress[3] + F[i][1] * stress[2] + F[i][2] * third;
   }
+  patterns_of(Z, of_patterns);
+  if constexpr (curve == LatticeCurve::none)
+    add_hourglass_forces(times_area(list.relaxing, c.area), c, of_patterns, w);
+  else
+    add_hourglass_forces(list, springs, c, v, of_patterns, w);
 }
 
 /// Forces of a vector of cells, the lanes from `at` of their block; `rates`: velocities of the corners.
@@ -335,29 +347,26 @@ SPRINGPROOF_INLINE void forces_of_cells(const CellList<Real>& list, long block, 
   if (list.boxes) stretch(list, D, S);
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) F[i][j] = i == j ? D[i][j] + Real(1) : D[i][j];
+  turned_back(F, S, v);
+  for (auto& of_pattern : w)
+    for (V& entry : of_pattern) entry = 0;
+  const LatticeAveraged<V> springs = times_area(list.springs, c.area);
+  V of_branches[3][3];  // here, where fewest numbers are kept beside them
+  if constexpr (relaxing)
+    add_branches<curve>(list, list.overstrains + overstrain_count * list.branch_count * (cells<Real> * block + at),
+                        springs, c, D, F, v, of_branches, w);
+  else if constexpr (curve != LatticeCurve::none)
+    add_hourglass_forces(springs, c, v, w);
   invert(D, F, inverse_transposed, dilatation);
   if constexpr (curve == LatticeCurve::neo_hooke_isochoric)  // the others have the logarithm of J
     stdx::where(dilatation < Real(-1), dilatation) = Real(__builtin_nan(""));
-  for (auto& of_pattern : w)
-    for (V& entry : of_pattern) entry = 0;
-  turned_back(F, S, v);
-  V Z[overstrain_count], of_patterns[4][3];
-  if constexpr (relaxing) {
-    relax(list, list.overstrains + overstrain_count * cells<Real> * list.branch_count * block + at, D, v, Z);
-    patterns_of(Z, of_patterns);
-  }
-  if constexpr (curve == LatticeCurve::none) {
+  if constexpr (curve == LatticeCurve::none)
     measured_stress<Real>(list.forms + cell_number::of_form * cells<Real> * block + at, c, D, F, dilatation, v, P, w);
-    if constexpr (relaxing) add_hourglass_forces(times_area(list.relaxing, c.area), c, of_patterns, w);
-  } else {
-    const LatticeAveraged<V> springs = times_area(list.springs, c.area);
-    if constexpr (relaxing)
-      add_hourglass_forces(list, springs, c, v, of_patterns, w);
-    else
-      add_hourglass_forces(springs, c, v, w);
+  else
     first_stress<curve>(springs, D, inverse_transposed, dilatation, P);
-  }
-  if constexpr (relaxing) add_relaxing_stress<Real>(c.area * list.relaxing.shear, F, Z, P);
+  if constexpr (relaxing)
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) P[i][j] += of_branches[i][j];
   if constexpr (viscous) {
     const LatticeAveraged<V> dashpots = times_area(list.dashpots, c.area);
     V rate[3][3], S_rate[3][4];
@@ -446,9 +455,9 @@ SPRINGPROOF_INLINE void add_branch_energies(const CellList<Real>& list, long blo
     for (int j = 0; j < 3; ++j) F[i][j] = i == j ? D[i][j] + Real(1) : D[i][j];
   turned_back(F, S, v);
   strains_of_branches<Real>(D, v, z);
-  const Real* P = list.overstrains + overstrain_count * cells<Real> * list.branch_count * block + at;
+  const Real* P = list.overstrains + overstrain_count * list.branch_count * (cells<Real> * block + at);
   for (int b = 0; b < list.branch_count; ++b) {
-    for (int e = 0; e < overstrain_count; ++e, P += cells<Real>)
+    for (int e = 0; e < overstrain_count; ++e, P += lanes<Real>)
       Q[e] = list.branches[b].gain * z[e] - list.branches[b].loss * load(P);
     const V energy = energy_of(times_area(list.relaxing, c.area), c, Q) / (list.branches[b].share * c.per_edge);
     stored[b] += double(stdx::reduce(energy));
@@ -470,6 +479,7 @@ void branch_energies(const CellList<Real>& list, const Padded<Real>* u, double* 
 template <class Real>
 CellListKernels<Real> cell_list_kernels() {
   return {.cells = cells<Real>,
+          .lanes = lanes<Real>,
           .forces = forces<Real>,
           .viscous_forces = forces_of_curve<true, false, Real>,
           .relaxing_forces = relaxing_forces<Real>,
