@@ -129,6 +129,7 @@ struct CellList {
   const Real* forms = nullptr;    ///< of measured cells: per block each number of MeasuredCells::form in turn [N/m]
   LatticeAveraged<Real> springs = {};   ///< moduli, hourglass stiffness times G / 8 [Pa]; of measured cells no curve
   LatticeAveraged<Real> dashpots = {};  ///< the same times the time of retardation [s]; without a curve
+  Real retardation = 0;                 ///< this time, for the forms
   LatticeAveraged<Real> relaxing = {};  ///< long-time moduli of the branches; without a curve
   /// Of branches beside averaged springs, whose long-time moduli but for bending are theirs: bending modes of
   /// overstrains V resist as `own` V + `other` (V of the other mode of the plane) of the springs would.
