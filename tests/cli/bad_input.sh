@@ -191,7 +191,7 @@ measured_as() {
   printf "${4:-time_s,value_m,u_m\\n0.5,-0.0061,1e-5\\n}" >"$work/creep.csv"
   expect "$1" "$2" compare "$work/bar.toml" --out "$work/out"
 }
-measured_as "a value without u" 'bar.toml:29:12: measured.values.u: is missing .allowed: a finite number > 0' 's/, u = 1e-4//'
+measured_as "a value without u" 'bar.toml:29:11: measured.values.u: is missing .allowed: a finite number > 0' 's/, u = 1e-4//'
 measured_as "u = 0" 'bar.toml:29:[0-9]+: measured.values.u: is 0 ' 's/u = 1e-4/u = 0/'
 measured_as "a value in another unit" 'bar.toml:29:.*measured.values.value: is -10 m, more than twice the size' 's/-0.01/-10/'
 measured_as "a patch of a value that is not there" "bar.toml:29:.*the body has no patch 'x_mx' .*did you mean" 's/x_max.z", value/x_mx.z", value/'
