@@ -529,7 +529,9 @@ SPRINGPROOF_INLINE void add_branch_energies(const CellList<Real>& list, long blo
     for (int e = 0; e < overstrain_count; ++e, P += lanes<Real>)
       Q[e] = list.branches[b].gain * z[e] - list.branches[b].loss * load(P);
     const V energy = energy_of(times_area(list.relaxing, c.area), c, Q) / (list.branches[b].share * c.per_edge);
-    stored[b] += double(stdx::reduce(energy));
+    alignas(64) Real of_cells[lanes<Real>];
+    store<Real>(energy, of_cells);
+    for (const Real of_cell : of_cells) stored[b] += double(of_cell);
   }
 }
 
