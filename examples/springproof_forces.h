@@ -254,6 +254,64 @@ static double sp_averaged_cell(struct sp_averaged law, double edge, struct sp_pa
   return energy;
 }
 
+/* Branches of a material that relaxes, relaxation of the file: an overstrain Q of each follows Q' + Q / time = E', E
+ * the strains of a cell: the deviator of Green-Lagrange's strain, row by row, and the v of sp_state. */
+enum { SP_STRAINS = 21 };
+struct sp_branches {
+  size_t count;
+  const double *share, *time;
+  struct sp_averaged
+      cells; /* shear_modulus and hourglass springs of the branches; curve and lame_lambda are not read */
+};
+
+/* Advances the branches of a cell by a step of dt [s] that ends at x, exactly for strains that change evenly, and adds
+ * their forces there.  state: SP_STRAINS * (1 + count) numbers, the strains and each branch's Q; zeros: relaxed at
+ * rest; dt = INFINITY: relaxed at x.  Returns the energy of the branches. */
+static double sp_relaxing_cell(struct sp_branches all, double edge, struct sp_part part, const int n[8],
+                               const double* x, double dt, double* state, double* f) {
+  struct sp_state a = sp_state_of(edge, part, n, x);
+  const double V = part.fraction * edge * edge * edge;
+  double E[SP_STRAINS], sum[SP_STRAINS] = {0}, trace = -3, energy = 0;
+  for (int i = 0; i < 9; ++i) trace += a.F[i / 3][i % 3] * a.F[i / 3][i % 3];
+  for (int i = 0; i < 9; ++i) {
+    E[i] = (i % 4 == 0 ? -1 - trace / 3 : 0) / 2;
+    for (int k = 0; k < 3; ++k) E[i] += a.F[k][i / 3] * a.F[k][i % 3] / 2;
+  }
+  for (int m = 0; m < 12; ++m) E[9 + m] = a.v[m / 3][m % 3];
+  for (size_t b = 0; b < all.count; ++b) {
+    double *Q = state + SP_STRAINS * (1 + b), w[4][3], of_v[4][3], twice = 0;
+    const double ratio = dt / all.time[b], phi = ratio > 0 ? -expm1(-ratio) / ratio : 1;
+    for (int i = 0; i < SP_STRAINS; ++i) {
+      Q[i] = exp(-ratio) * Q[i] + phi * (E[i] - state[i]);
+      sum[i] += all.share[b] * Q[i];
+      if (i < 9) twice += 2 * all.cells.shear_modulus * V * Q[i] * Q[i];
+    }
+    for (int m = 0; m < 12; ++m) of_v[m / 3][m % 3] = Q[9 + m];
+    sp_hourglass_springs(all.cells, edge, part, of_v, w);
+    for (int m = 0; m < 12; ++m) twice += Q[9 + m] * w[m / 3][m % 3];
+    energy += all.share[b] * twice / 2;
+  }
+  double v[4][3], w[4][3], P[3][3] = {{0}};
+  for (int i = 0; i < SP_STRAINS; ++i) state[i] = E[i];
+  for (int m = 0; m < 12; ++m) v[m / 3][m % 3] = sum[9 + m];
+  sp_hourglass_springs(all.cells, edge, part, v, w);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      for (int k = 0; k < 3; ++k) P[i][j] += 2 * all.cells.shear_modulus * V * a.F[i][k] * sum[3 * k + j];
+  if (f) sp_add_cell(&a, P, w, n, f);
+  return energy;
+}
+
+/* Of all cells; edges: of each.  states: cells x SP_STRAINS * (1 + count).  In explicit steps: once a step, with f. */
+static double sp_relaxing(size_t cells, const int* nodes, const double* edges, struct sp_parts parts,
+                          struct sp_branches all, const double* x, double dt, double* states, double* f) {
+  double energy = 0;
+  for (size_t c = 0; c < cells; ++c)
+    energy += sp_relaxing_cell(all, edges[c], sp_part_of(parts, c), nodes + 8 * c, x, dt,
+                               states + SP_STRAINS * (1 + all.count) * c, f);
+  return energy;
+}
+
 /* Eigenvectors of a symmetric matrix as the columns of V, by Jacobi's rotations; A's diagonal gets the eigenvalues. */
 static void sp_eigenvectors(double A[3][3], double V[3][3]) {
   for (int i = 0; i < 3; ++i)

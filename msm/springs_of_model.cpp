@@ -61,8 +61,10 @@ EmbeddedSurface carried_surface(EmbeddedSurface surface, const Mesh& cells, cons
 }
 
 std::map<std::string, double> derived_of(const SpringsFile& file) {
-  std::map<std::string, double> derived = {{"safe_time_step_s", safe_time_step(file.model, file.density)},
-                                           {"mass_kg", masses(file.model.network, file.density).sum()}};
+  std::map<std::string, double> derived = {
+      {"safe_time_step_s",
+       relaxing_time_step(file.model, file.density, file.relaxing, safe_time_step(file.model, file.density))},
+      {"mass_kg", masses(file.model.network, file.density).sum()}};
   if (const auto* hourglass = law_of<HourglassCorrection>(file.model)) {
     const HourglassCorrection::Stiffness k = hourglass->stiffness(file.model.network.cells.edge);
     derived.merge(std::map<std::string, double>{{"hourglass_bending_N_m", k.bending},

@@ -101,6 +101,14 @@ void print(const Experiment& e, const FrequencyTable& t, int modes) {
   }
   for (std::size_t first = 0; first == 0 || first < shown.size(); first += models_abreast)
     print_modes(t, {shown.begin() + first, shown.begin() + std::min(first + models_abreast, shown.size())}, modes);
+  for (const ModelFrequencies* m : shown) {
+    std::vector<std::string> percent;
+    for (std::size_t i = 0; i < std::min(m->modes.damping.size(), static_cast<std::size_t>(modes)); ++i)
+      percent.push_back(fmt::format("{:.3g}", 100 * m->modes.damping[i]));
+    if (!percent.empty())
+      to_stdout("damping of {} by its branches, in % of critical, mode by mode: {}\n", name_of(*m),
+                fmt::join(percent, ", "));
+  }
 }
 
 nlohmann::json json_of(const FrequencyTable& t) {
@@ -125,6 +133,7 @@ nlohmann::json json_of(const FrequencyTable& t) {
                             {"solver", m.solver},
                             {"seconds", m.seconds},
                             {"frequencies_Hz", m.modes.frequencies},
+                            {"damping_ratios", m.modes.damping},
                             {"rms_error", m.rms},
                             {"largest_error", m.largest},
                             {"pairs", nlohmann::json::array()}};

@@ -30,11 +30,12 @@ struct IdentifiedValue {
   std::string name, load_case, unit;
   bool fitted = false;
   double measured = 0, u_measured = 0;
-  std::optional<double> simulated = {};    ///< the limit of the lattices
-  std::optional<double> residual = {};     ///< (simulated - measured) / u_measured
-  std::optional<double> u_numerical = {};  ///< empty: one lattice
-  std::optional<double> u_fit = {};        ///< of a prediction, by the fit's values
-  std::optional<double> u_input = {};      ///< by the inputs, of which the fit answers to a part
+  std::optional<double> simulated = {};        ///< the limit of the lattices
+  std::optional<double> residual = {};         ///< (simulated - measured) / u_measured
+  std::optional<double> u_numerical = {};      ///< empty: one lattice
+  std::optional<double> u_fit = {};            ///< of a prediction, by the fit's values
+  std::optional<double> u_fit_numerical = {};  ///< by what is not known of their limits
+  std::optional<double> u_input = {};          ///< by the inputs, of which the fit answers to a part
   std::optional<double> u_val = {};
   std::optional<double> ratio = {};  ///< |E| / u_val
 };
@@ -58,8 +59,8 @@ struct Identified {
   std::string message;  ///< why not
   int iterations = 0;
   std::vector<IdentifiedParameter> parameters;
-  std::vector<std::vector<double>> correlation;
-  std::vector<KnownDirection> directions;  ///< the worst known first
+  std::vector<std::vector<double>> correlation;  ///< of those that are found; of one that is held, were it not
+  std::vector<KnownDirection> directions;        ///< the worst known first
   std::vector<IdentifiedValue> values;
   double chi2 = 0;
   int freedom = 0;    ///< fitted values less parameters that are not held

@@ -13,7 +13,7 @@ namespace springproof {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(IdentifiedParameter, name, of, start, lower, upper, logarithmic, held, value, u_data,
                                    u_inputs, u_numerical, u, from, to, inputs)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(IdentifiedValue, name, load_case, unit, fitted, measured, u_measured, simulated,
-                                   residual, u_numerical, u_fit, u_input, u_val, ratio)
+                                   residual, u_numerical, u_fit, u_fit_numerical, u_input, u_val, ratio)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(KnownDirection, along, u)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SyntheticSets, sets, inside)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Identified, case_name, name, model, cells, ok, message, iterations, parameters,
@@ -35,7 +35,8 @@ std::string parameters_text(const Identified& out) {
                         number_or_none(p.u_inputs, "{:.2g}"), number_or_none(p.u_numerical, "{:.2g}"));
   for (std::size_t i = 0; i < out.parameters.size(); ++i)
     for (std::size_t k = 0; k < i; ++k)
-      text += fmt::format("correlation of {} and {}: {:.3f}\n", out.parameters[k].name, out.parameters[i].name,
+      text += fmt::format("correlation of {} and {}{}: {:.3f}\n", out.parameters[k].name, out.parameters[i].name,
+                          out.parameters[i].held || out.parameters[k].held ? ", were none held" : "",
                           out.correlation[i][k]);
   return text;
 }

@@ -78,6 +78,7 @@ class Fitting {
   void set_parameters(Identified& out);
   void set_values(Identified& out);
   Maybe moved(Index free, const std::vector<Maybe>& change) const;
+  Maybe moved_by_limits(Index free) const;
   void set_uncertainties(Index free, double scale, IdentifiedParameter& p) const;
   IdentifiedParameter parameter(std::size_t number, double u) const;
   Maybe change_by_input(std::size_t m, std::size_t input) const;
@@ -196,6 +197,14 @@ Maybe Fitting::moved(Index free, const std::vector<Maybe>& change) const {
   return sum;
 }
 
+/// What is not known of the limits moves a free parameter by: all lattices are too stiff, or too soft, together.
+Maybe Fitting::moved_by_limits(Index free) const {
+  std::vector<Maybe> in_limits = u_numerical_;
+  for (std::size_t m = 0; m < in_limits.size(); ++m)
+    if (in_limits[m] && on_lattices_[m].values.back() < on_lattices_[m].values.front()) in_limits[m] = -*in_limits[m];
+  return moved(free, in_limits);
+}
+
 /// Sets the uncertainties by inputs and lattices, as it is sought, of a parameter that is not held.
 void Fitting::set_uncertainties(Index free, double scale, IdentifiedParameter& p) const {
   double squares = 0;
@@ -205,10 +214,7 @@ void Fitting::set_uncertainties(Index free, double scale, IdentifiedParameter& p
     p.inputs.push_back({e_.inputs[inputs_[i]].name, change ? Maybe(scale * *change) : Maybe(), false});
   }
   p.u_inputs = scale * std::sqrt(squares);
-  std::vector<Maybe> in_limits = u_numerical_;  // all lattices are too stiff, or too soft, together
-  for (std::size_t m = 0; m < in_limits.size(); ++m)
-    if (in_limits[m] && on_lattices_[m].values.back() < on_lattices_[m].values.front()) in_limits[m] = -*in_limits[m];
-  if (const Maybe change = moved(free, in_limits)) p.u_numerical = scale * std::abs(*change);
+  if (const Maybe change = moved_by_limits(free)) p.u_numerical = scale * std::abs(*change);
 }
 
 IdentifiedParameter Fitting::parameter(std::size_t number, double u) const {
@@ -239,8 +245,10 @@ void Fitting::set_parameters(Identified& out) {
   answer_ = -told.covariance * of_free.transpose();
   for (Index d = 0; d < all.along.size(); ++d)
     out.directions.push_back({{all.directions.col(d).begin(), all.directions.col(d).end()}, all.along[d]});
+  MatrixXd correlation = all.correlation;
+  correlation(free_, free_) = told.correlation;
   for (Index i = 0; i < all.u.size(); ++i)
-    out.correlation.emplace_back(all.correlation.row(i).begin(), all.correlation.row(i).end());
+    out.correlation.emplace_back(correlation.row(i).begin(), correlation.row(i).end());
   VectorXd u = all.u;
   u(free_) = told.u;
   for (Index p = 0; p < u.size(); ++p) out.parameters.push_back(parameter(static_cast<std::size_t>(p), u[p]));
@@ -273,8 +281,16 @@ void Fitting::set_prediction(std::size_t m, IdentifiedValue& v) const {
     squares += std::pow(*change, 2);
   }
   v.u_input = std::sqrt(squares);
+  double by_limits = 0;
+  for (std::size_t k = 0; k < free_.size(); ++k) {
+    const Maybe change = moved_by_limits(static_cast<Index>(k));
+    if (!change) return;
+    by_limits += slope[static_cast<Index>(k)] * *change;
+  }
+  v.u_fit_numerical = std::abs(by_limits);
   if (!v.u_numerical) return;
-  v.u_val = std::hypot(std::hypot(*v.u_input, *v.u_numerical), *v.u_fit, v.residual ? v.u_measured : 0);
+  v.u_val = std::hypot(std::hypot(*v.u_input, *v.u_numerical), std::hypot(*v.u_fit, *v.u_fit_numerical),
+                       v.residual ? v.u_measured : 0);
   if (!v.residual) return;  // not measured yet
   v.ratio = std::abs(*v.simulated - v.measured) / *v.u_val;
 }

@@ -33,6 +33,55 @@ std::string parameters_html(const Identified& out) {
          rows + "</tbody></table></div>\n";
 }
 
+std::string table_html(const std::vector<std::string>& heads, const std::string& rows) {
+  std::string head;
+  for (const std::string& h : heads) head += fmt::format("<th class=\"number\">{}</th>", xml_escaped(h));
+  return "<div class=\"scroll\"><table><thead><tr><th></th>" + head + "</tr></thead><tbody>\n" + rows +
+         "</tbody></table></div>\n";
+}
+
+/// Beside each other, the worst known direction first.
+std::string correlations_html(const Identified& out) {
+  if (out.parameters.size() < 2) return "";
+  std::vector<std::string> names, directions = {"u"};
+  for (const IdentifiedParameter& p : out.parameters) names.push_back(p.name + (p.held ? " (held)" : ""));
+  std::string rows, of_directions;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    rows += "<tr><th>" + xml_escaped(names[i]) + "</th>";
+    for (std::size_t k = 0; k < names.size(); ++k)
+      rows += number_cell(k < i ? std::optional(out.correlation[i][k]) : std::nullopt, "{:.3f}");
+    rows += "</tr>\n";
+  }
+  directions.insert(directions.end(), names.begin(), names.end());
+  for (std::size_t d = 0; d < out.directions.size(); ++d) {
+    of_directions += fmt::format("<tr><th>direction {}</th>{}", d + 1, number_cell(out.directions[d].u, "{:.2g}"));
+    for (const double along : out.directions[d].along) of_directions += number_cell(along, "{:+.2f}");
+    of_directions += "</tr>\n";
+  }
+  return "<h3>Told together</h3>\n<p class=\"note\">Correlations, of a parameter that is held as if it were "
+         "not.</p>\n" +
+         table_html(names, rows) +
+         "<p class=\"note\">Directions in which the fitted values tell all parameters, the worst known first: u along "
+         "each, by the data, and its components; logarithms of what is positive.</p>\n" +
+         table_html(directions, of_directions);
+}
+
+std::string synthetic_html(const Identified& out) {
+  if (out.synthetic.sets == 0) return "";
+  std::string rows;
+  std::size_t free = 0;
+  for (const IdentifiedParameter& p : out.parameters)
+    if (!p.held) {
+      const int inside = out.synthetic.inside[free++];
+      rows += fmt::format("<tr><th>{}</th><td class=\"number\">{} of {}</td><td class=\"number\">{:.1f} %</td></tr>\n",
+                          xml_escaped(p.name), inside, out.synthetic.sets, 100.0 * inside / out.synthetic.sets);
+    }
+  return "<h3>Synthetic sets</h3>\n<p class=\"note\">Values made of the fit, with noise of their u, and fitted anew: "
+         "how "
+         "often the limits of 95 %, by the data, hold what they were made with.</p>\n" +
+         table_html({"inside", ""}, rows);
+}
+
 std::string values_html(const Identified& out) {
   std::string rows;
   for (const bool fitted : {true, false})
@@ -106,8 +155,8 @@ std::string section_html(const Identified& out) {
       residuals_svg(out) +
       "<p class=\"note\">E = S − D over its standard uncertainty. Circles: fitted values, over u_D. Dots: predicted "
       "values, over u_val. Within the band, 2 on both sides, no error of the model shows.</p>\n";
-  return html + values_html(out) +
-         fmt::format("<p class=\"note\">χ² = {:.3g} of {}.</p></section>\n", out.chi2, out.freedom);
+  return html + values_html(out) + fmt::format("<p class=\"note\">χ² = {:.3g} of {}.</p>\n", out.chi2, out.freedom) +
+         correlations_html(out) + synthetic_html(out) + "</section>\n";
 }
 
 }  // namespace

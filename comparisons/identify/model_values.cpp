@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
+#include <numeric>
 #include <set>
 
 #include "comparisons/judge/simulated_value.h"
@@ -26,6 +28,21 @@ void keep_number(std::size_t i, std::vector<T>& all) {
   if (i < all.size()) all = {all[i]};
 }
 
+/// The numbers of a body's resolutions, the coarsest first.
+std::vector<std::size_t> by_fineness(const Body& body, std::size_t count) {
+  std::vector<std::size_t> order(count);
+  std::iota(order.begin(), order.end(), 0);
+  const auto sort_by = [&](const auto& of_each, auto coarser) {
+    if (of_each.size() == count)
+      std::stable_sort(order.begin(), order.end(),
+                       [&](std::size_t a, std::size_t b) { return coarser(of_each[a], of_each[b]); });
+  };
+  sort_by(body.voxel_counts, std::less<>());
+  sort_by(body.voxel_edges, std::greater<>());
+  sort_by(body.accuracies, std::greater<>());
+  return order;
+}
+
 /// The measures that have the measured values.
 std::vector<std::string> measures_of(const Experiment& e) {
   std::set<std::string> names;
@@ -47,6 +64,7 @@ ModelValues::ModelValues(const Experiment& e, const Identification& sought, std:
                 : e.body.cells.empty() ? std::vector<Cells>(e.body.resolutions(), Cells{0, 0, 0})
                                        : e.body.cells) {
   std::sort(lattices_.begin(), lattices_.end(), has_fewer_cells);
+  resolution_ = by_fineness(e.body, lattices_.size());
 }
 
 std::vector<Cells> ModelValues::cells() const {
@@ -72,9 +90,9 @@ Experiment ModelValues::case_at(const Variation& variation, std::size_t lattice)
     changed.body.cells = {lattices_[lattice]};
     return changed;
   }
-  keep_number(lattice, changed.body.voxel_counts);
-  keep_number(lattice, changed.body.voxel_edges);
-  keep_number(lattice, changed.body.accuracies);
+  keep_number(resolution_[lattice], changed.body.voxel_counts);
+  keep_number(resolution_[lattice], changed.body.voxel_edges);
+  keep_number(resolution_[lattice], changed.body.accuracies);
   return changed;
 }
 

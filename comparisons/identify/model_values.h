@@ -43,7 +43,8 @@ class ModelValues {
   const Identification& sought_;
   const std::filesystem::path folder_;
   const std::string stamp_;
-  std::vector<Cells> lattices_;  ///< of a body of voxels {0, 0, 0} until they have run
+  std::vector<Cells> lattices_;          ///< of a body of voxels {0, 0, 0} until they have run
+  std::vector<std::size_t> resolution_;  ///< of each, its number in the case file; of a body of voxels
   std::map<std::string, VariedRun> runs_of_;
   std::string message_;
   int runs_ = 0, kept_ = 0;

@@ -12,6 +12,7 @@ namespace springproof {
 struct ModeSet {
   std::vector<double> frequencies;   ///< [Hz]
   std::vector<NodalVectors> shapes;  ///< n x 3 each
+  std::vector<double> damping = {};  ///< by branches that relax, share of critical; empty: none
 };
 
 /// Modes whose frequencies differ by less, one from the next, are taken for one multiple mode: within its subspace

@@ -103,9 +103,12 @@ constexpr int fixed_point_steps = 20;  // more than a frequency of 12 digits nee
 /// of a sudden strain, of whose shear modulus the square of a frequency is all but a linear function.
 /// @param low modes of long times, whose frequencies become these
 /// @param high of a sudden strain
-void relax(const Relaxation& relaxation, const ModeSet& high, const Eigen::VectorXd& weights, ModeSet& low) {
+/// @return how each is damped, by the loss modulus, share of critical
+std::vector<double> relax(const Relaxation& relaxation, const ModeSet& high, const Eigen::VectorXd& weights,
+                          ModeSet& low) {
   const std::vector<ModePair> pairs = pair_modes(low, high, weights);
   const double sudden = relaxation.instantaneous();
+  std::vector<double> damping;
   for (std::size_t i = 0; i < low.frequencies.size(); ++i) {
     double& f = low.frequencies[i];
     const double square = f * f,
@@ -113,7 +116,9 @@ void relax(const Relaxation& relaxation, const ModeSet& high, const Eigen::Vecto
                  slope = (other - square) / (sudden - 1);
     for (int step = 0; step < fixed_point_steps; ++step)
       f = std::sqrt(square + slope * (relaxation.storage(2 * std::numbers::pi * f) - 1));
+    damping.push_back(slope * relaxation.loss(2 * std::numbers::pi * f) / (2 * f * f));
   }
+  return damping;
 }
 
 /// Modes of a material, which may relax; none where those of a sudden strain have no result.
@@ -125,7 +130,7 @@ ModeSet relaxing_modes(const Relaxation& relaxation, const IsotropicMaterial& ma
   if (!relaxation.acts() || modes.frequencies.empty()) return modes;
   const ModeSet sudden = of(with_shear(material, relaxation.instantaneous()));
   if (sudden.frequencies.empty()) return sudden;
-  relax(relaxation, sudden, weights, modes);
+  modes.damping = relax(relaxation, sudden, weights, modes);
   return modes;
 }
 
@@ -186,6 +191,10 @@ void compare(const FrequencyTable& table, const Eigen::VectorXd& weights, ModelF
 
 ModelFrequencies frequencies_of(const PreparedCase& prepared, const Lattice& lattice, std::size_t number, double theta,
                                 const IsotropicMaterial& material, int modes) try {
+  if (prepared.models[number].springs && prepared.experiment.relaxation.acts())
+    throw InputError(prepared.experiment.models[number].where,
+                     "compare.models: the springs of a file have one stiffness, which is not that of a vibration where "
+                     "they relax (allowed beside [material.relaxation]: models by name)");
   ModelFrequencies out;
   out.label = prepared.experiment.models[number].label;
   out.consistency = theta;

@@ -99,13 +99,16 @@ bool landed(const HistoryRecord& h) {
   return pushed('x') || pushed('y') || pushed('z');
 }
 
-/// Of the total energy, relative to the largest kinetic energy.
+/// Of the total energy, with what branches have stored and dissipated, relative to the largest kinetic energy.
 void measure_energy(std::size_t first, HistoryRecord& h) {
   const std::vector<double>*kinetic = series(h, "kinetic_energy"), *elastic = series(h, "elastic_energy"),
         *load = series(h, "load_potential");
   if (!elastic || first >= h.time.size()) return;
   std::vector<double> total(h.time.size());
   for (std::size_t i = first; i < total.size(); ++i) total[i] = (*kinetic)[i] + (*elastic)[i] + (*load)[i];
+  for (const char* of_branches : {"branch_energy", "dissipated_energy"})
+    if (const std::vector<double>* more = series(h, of_branches))
+      for (std::size_t i = first; i < total.size(); ++i) total[i] += (*more)[i];
   const double largest = std::max(0.0, *std::max_element(kinetic->begin() + static_cast<long>(first), kinetic->end()));
   if (largest > 0) h.measured["energy_drift"] = drift_of(total, first) / largest;
 }
@@ -143,8 +146,7 @@ void measure(const MovingNetwork& moving, const BoundaryConditions& last, Histor
     h.measured = measured_in_time(e, h);
   }
   const bool damped = motion.damping > 0;
-  if (!damped && motion.viscosity == 0 && !e.relaxation.acts() && !landed(h))
-    measure_energy(first_settled(motion, h), h);
+  if (!damped && motion.viscosity == 0 && !landed(h)) measure_energy(first_settled(motion, h), h);
   const std::vector<double>& kinetic = *series(h, "kinetic_energy");
   const double scale = std::sqrt(2 * masses.sum() * *std::max_element(kinetic.begin(), kinetic.end()));
   const bool flies = std::none_of(last.fixed.begin(), last.fixed.end(), [](bool f) { return f; });

@@ -29,6 +29,10 @@ void MotionRecorder::operator()(const MotionSample& now) {
   next_ = 0;
   add("kinetic_energy", "J", 0.5 * (s.cwiseProduct(v).rowwise().sum().array() * mass_.array()).sum());
   if (can(model, Capability::energy)) add("elastic_energy", "J", energy(model, now.x));
+  if (now.energies) {
+    add("branch_energy", "J", now.energies->stored);
+    add("dissipated_energy", "J", now.energies->dissipated);
+  }
   add_momenta(now.x, s);
   const NodalVectors u = now.x - model.network.X;
   add("load_potential", "J", -now.conditions.external.cwiseProduct(u).sum());

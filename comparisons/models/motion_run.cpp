@@ -46,6 +46,7 @@ Equilibrium run_motion(const MovingNetwork& moving, const LoadPath& path, Motion
   options.course = motion.course;
   options.duration = motion.duration;
   options.stride = steps.stride;
+  options.branch_energies = options.relaxation.acts();
   options.velocity = rigid_velocity(motion, model.network, moving.masses());
   MotionRecorder recorder(moving, options, record);
   options.after_step = [&](const MotionSample& now) {

@@ -48,6 +48,7 @@ void check_mean_displacements(const Experiment& e, const std::vector<std::string
   };
   for (const Expectation& x : e.expectations) check(x.measure, x.location);
   for (const PublishedValue& v : e.published) check(v.measure, v.location);
+  for (const MeasuredValue& m : e.measured) check(m.quantity, m.where);
 }
 
 namespace {

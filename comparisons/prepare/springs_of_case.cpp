@@ -107,6 +107,7 @@ SpringsFile springs_of(const PreparedCase& prepared, const Mesh* carried) {
                                                   : prepared.experiment.file.filename().string(),
                  input_checksum(prepared.experiment)};
   if (parameters.cut.value_or(false)) file.origin.options["cut"] = true;  // not what the name says: averaged springs
+  file.relaxing = RelaxingCells::of(file.model, *file.material, prepared.experiment.relaxation);
   file.derived = derived_of(file, parameters);
   return file;
 }

@@ -22,6 +22,7 @@
 #include "meshes/patches/select_patches.h"
 #include "meshes/regions/mark_regions.h"
 #include "meshes/volume.h"
+#include "msm/exchange/springs_file.h"
 #include "msm/models.h"
 #include "msm/statics/equilibrium.h"
 #include "problem/case_file/external.h"
@@ -133,20 +134,47 @@ void choose_curve(const Experiment& e, ModelParameters& p) {
     if (e.kinematics == name_of(curve)) p.curve = curve;
 }
 
+/// Whether they relax alike, to the digits of a file.
+bool same(const RelaxingCells& a, const RelaxingCells& b) {
+  const auto equal = [](double x, double y) { return std::abs(x - y) <= 1e-9 * std::max(std::abs(x), std::abs(y)); };
+  const auto &p = a.relaxation.branches, &q = b.relaxation.branches;
+  const HourglassStiffness &h = a.cells.hourglass, &k = b.cells.hourglass;
+  return std::equal(p.begin(), p.end(), q.begin(), q.end(),
+                    [&](const auto& x, const auto& y) { return equal(x.share, y.share) && equal(x.time, y.time); }) &&
+         equal(a.cells.shear_modulus, b.cells.shear_modulus) && equal(h.bending, k.bending) &&
+         equal(h.coupling, k.coupling) && equal(h.torsion, k.torsion) && equal(h.twist, k.twist) &&
+         equal(h.warping, k.warping);
+}
+
+/// @throws InputError at a springs file that relaxes otherwise than the case's material.
+void check_relaxing(const PreparedCase& prepared, std::size_t m, const IsotropicMaterial& material) {
+  if (!prepared.models[m].springs) return;
+  const SpringsFile& file = *prepared.models[m].springs;
+  const Experiment& e = prepared.experiment;
+  const auto refuse = [&](const std::string& why) {
+    throw InputError(e.models[m].where, fmt::format("compare.models: {}: {}", e.models[m].label, why));
+  };
+  if (file.relaxing.acts() && !e.relaxation.acts())
+    refuse("/relaxation: the springs of the file relax (needed: its branches as [material.relaxation])");
+  if (!file.relaxing.acts() && e.relaxation.acts())
+    refuse("the springs of the file do not relax (allowed: a file with branches; or no [material.relaxation])");
+  if (std::isfinite(e.loaded_for))
+    refuse("the springs of a file have their long-time moduli at rest (allowed: no equilibrium_after_s)");
+  if (!same(file.relaxing, RelaxingCells::of(file.model, material, e.relaxation)))
+    refuse("/relaxation: is not that of the case's [material.relaxation] (needed: the same branches and constants)");
+}
+
 /// @throws InputError at a springs file that stands for another material than the case's.
 void check_own_models(const PreparedCase& prepared) {
   const Experiment& e = prepared.experiment;
-  for (std::size_t m = 0; m < prepared.models.size(); ++m)
-    if (prepared.models[m].springs && e.relaxation.acts())
-      throw InputError(e.models[m].where,
-                       "compare.models: the springs of a file do not relax (allowed: models by name; or no "
-                       "[material.relaxation])");
   for (std::size_t m = 0; m < prepared.models.size(); ++m)
     for (const IsotropicMaterial& material : e.materials) try {
         require_material(prepared.models[m], material);
       } catch (const InputError& error) {
         throw InputError(e.models[m].where, fmt::format("compare.models: {}", error.what()));
       }
+  for (std::size_t m = 0; m < prepared.models.size(); ++m)
+    for (const IsotropicMaterial& material : e.materials) check_relaxing(prepared, m, material);
 }
 
 /// False for a case of motions alone that start from rest: bodies may fly.
@@ -244,13 +272,14 @@ void check_plane(const PreparedCase& prepared, const Lattice& lattice) {
 void check_masses(const Experiment& e, const Mesh& mesh) {
   if (e.body.is_voxels()) return;  // whose cells may end below the surface
   const Locator locator(mesh);
-  for (const AttachedMass& mass : e.masses)
-    for (const Vec3& X : mass.at)
+  for (std::size_t m = 0; m < e.masses.size(); ++m)
+    for (const Vec3& X : e.masses[m].at)
       if (!locator.find(X))
-        throw InputError({e.file.string(), 0, 0},
-                         fmt::format("mass '{}': at_m: the point ({:.6g}, {:.6g}, {:.6g}) m lies outside the body "
-                                     "(allowed: a point of the body, of {:.6g} x {:.6g} x {:.6g} m)",
-                                     mass.name, X[0], X[1], X[2], e.body.size[0], e.body.size[1], e.body.size[2]));
+        throw InputError(
+            e.mass_locations[m],
+            fmt::format("mass '{}': at_m: the point ({:.6g}, {:.6g}, {:.6g}) m lies outside the body "
+                        "(allowed: a point of the body, of {:.6g} x {:.6g} x {:.6g} m)",
+                        e.masses[m].name, X[0], X[1], X[2], e.body.size[0], e.body.size[1], e.body.size[2]));
 }
 
 /// @throws InputError at a model that is of one material, in a case of several.

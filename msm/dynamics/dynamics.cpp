@@ -115,8 +115,8 @@ class MotionUnderLoads {
     result_.steps += steps;
     if (options_.contact) touch();
     if (options_.after_step && (result_.steps % options_.stride == 0 || result_.steps == last))
-      options_.after_step(
-          {result_.steps * dt_, motion_->positions(), motion_->velocities(), bc_, motion_->relaxing_forces()});
+      options_.after_step({result_.steps * dt_, motion_->positions(), motion_->velocities(), bc_,
+                           motion_->relaxing_forces(), motion_->branch_energies()});
     return look(norms);
   }
 

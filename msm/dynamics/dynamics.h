@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "msm/dynamics/checked_step.h"
 #include "msm/dynamics/motion.h"
@@ -14,11 +15,12 @@ namespace springproof {
 
 /// A motion at a time.
 struct MotionSample {
-  double time;                           ///< [s]
-  const NodalVectors& x;                 ///< positions [m]
-  const NodalVectors& v;                 ///< velocities of the step [m/s]
-  const BoundaryConditions& conditions;  ///< then
-  const NodalVectors& relaxing;          ///< Motion::relaxing_forces() [N]
+  double time;                                  ///< [s]
+  const NodalVectors& x;                        ///< positions [m]
+  const NodalVectors& v;                        ///< velocities of the step [m/s]
+  const BoundaryConditions& conditions;         ///< then
+  const NodalVectors& relaxing;                 ///< Motion::relaxing_forces() [N]
+  std::optional<BranchEnergies> energies = {};  ///< Motion::branch_energies()
 };
 
 /// How to move a model in time.

@@ -98,6 +98,11 @@ NodalVectors ImplicitMotion::relaxing_forces() const {
   return f;
 }
 
+std::optional<BranchEnergies> ImplicitMotion::branch_energies() const {
+  if (!overstrains_.acts()) return {};
+  return BranchEnergies{overstrains_.energy(), overstrains_.dissipated()};
+}
+
 ImplicitMotion::Formula ImplicitMotion::formula() const {
   const double dt = dt_, dashpots = options_.viscosity.time() / dt;
   double of_mean = 0, at_end = 0;  // branches

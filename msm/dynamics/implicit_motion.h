@@ -40,6 +40,7 @@ class ImplicitMotion : public Motion {
   void set_state(const NodalVectors& x, const NodalVectors& v) override;
   void relax() override { overstrains_.relax(x_); }
   NodalVectors relaxing_forces() const override;
+  std::optional<BranchEnergies> branch_energies() const override;
 
   /// @return the norms of internal and external forces over the last step; NaN if it has none, with the reason
   ///   in failure().

@@ -44,6 +44,7 @@ ListMotion<Real>::ListMotion(std::unique_ptr<BlockForces<Real>> forces, const Ma
     external_[p].v[gain] = static_cast<Real>(time_step_ * per_mass[n] * decay_);
     if (forces_->viscous()) x_[p].v[3] = external_[p].v[gain] / static_cast<Real>(decay_);
   }
+  if (options.branch_energies && forces_->relaxing()) watched_ = options.relaxation.relaxation.branches;
   if (options.mass_consistency > 0) set_up(mass_average(network_, density, options));
 }
 
@@ -112,6 +113,26 @@ void ListMotion<Real>::set_state(const NodalVectors& x, const NodalVectors& v) {
 template <class Real>
 void ListMotion<Real>::relax() {
   if (forces_->relaxing()) forces_->relax(x_.data());
+  energies_ = {};
+  power_ = 0;
+}
+
+/// Of steps that are made.
+template <class Real>
+void ListMotion<Real>::watch_branches(double duration) {
+  const std::vector<double> stored = forces_->branch_energies(x_.data());
+  const double before = power_;
+  power_ = energies_.stored = 0;
+  for (std::size_t b = 0; b < watched_.size(); ++b) {
+    energies_.stored += stored[b];
+    power_ += 2 * stored[b] / watched_[b].time;
+  }
+  energies_.dissipated += duration * (before + power_) / 2;
+}
+
+template <class Real>
+std::optional<BranchEnergies> ListMotion<Real>::branch_energies() const {
+  return watched_.empty() ? std::nullopt : std::optional(energies_);
 }
 
 template <class Real>
@@ -196,6 +217,7 @@ typename ListMotion<Real>::Squares ListMotion<Real>::run(long steps) {
 
 template <class Real>
 ForceNorms ListMotion<Real>::advance(long steps) {
+  const double duration = static_cast<double>(steps) * time_step_;
   Squares sum;
   if (steps > 0 && supports_wait_) {
     sum = run(1);
@@ -203,6 +225,7 @@ ForceNorms ListMotion<Real>::advance(long steps) {
     --steps;
   }
   if (steps > 0) sum = run(steps);
+  if (!watched_.empty()) watch_branches(duration);
   return {std::sqrt(sum.unbalanced), std::sqrt(sum.support)};
 }
 
@@ -243,13 +266,23 @@ template class ListMotion<float>;
 
 namespace {
 
+/// Whether kernels have the branches: beside averaged springs those whose long-time moduli are theirs but for bending.
+bool kernels_relax(const MassSpringModel& model, const RelaxingCells& relaxing) {
+  const AveragedSprings* own = averaged_springs_of(model);
+  if (!own || !relaxing.acts()) return true;
+  const HourglassStiffness &a = own->hourglass, &b = relaxing.cells.hourglass;
+  return own->shear_modulus == relaxing.cells.shear_modulus && a.torsion == b.torsion && a.twist == b.twist &&
+         a.warping == b.warping && a.bending > std::abs(a.coupling);
+}
+
 template <class Real>
 std::unique_ptr<BlockForces<Real>> block_forces(const MassSpringModel& model, const MotionOptions& options) {
   if (options.mass_consistency > 0 && options.viscosity.acts()) return nullptr;
   const std::vector<Anchor>& anchors = model.network.anchors;  // one support mass for all axes of a node
   if (std::any_of(anchors.begin(), anchors.end(), [](const Anchor& a) { return a.axes != 7; })) return nullptr;
   const AveragedSprings& dashpots = options.viscosity.cells();
-  if (can(model, Capability::cell_kernels) && !options.viscosity.along_springs() && dashpots.shift == 0) {
+  if (can(model, Capability::cell_kernels) && !options.viscosity.along_springs() && dashpots.shift == 0 &&
+      kernels_relax(model, options.relaxation)) {
     auto cells = std::make_unique<CellForces<Real>>(model, options.instructions, dashpots, options.viscosity.time());
     cells->set_branches(options.relaxation.relaxation, options.relaxation.cells, options.time_step.value());
     return cells;

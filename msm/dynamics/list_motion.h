@@ -27,6 +27,7 @@ class ListMotion : public Motion {
   void set_state(const NodalVectors& x, const NodalVectors& v) override;
   void relax() override;
   NodalVectors relaxing_forces() const override;
+  std::optional<BranchEnergies> branch_energies() const override;
   ForceNorms advance(long steps) override;
   NodalVectors positions() const override;
   NodalVectors velocities() const override;
@@ -50,6 +51,7 @@ class ListMotion : public Motion {
   void move_by_averages();
   Squares move(int begin, int end, bool apart);
   void move_with_speed();
+  void watch_branches(double duration);
   NodalVectors in_network_order(const std::vector<Padded<Real>>& v) const;
 
   std::unique_ptr<BlockForces<Real>> forces_;
@@ -62,7 +64,10 @@ class ListMotion : public Motion {
   double time_step_, decay_;
   bool lagged_, supports_wait_ = false;
   std::vector<Padded<Real>> x_, s_, f_, external_;
-  std::vector<Held> held_;  ///< sorted by place
+  std::vector<Held> held_;                 ///< sorted by place
+  std::vector<RelaxationBranch> watched_;  ///< branches whose energies are asked for
+  BranchEnergies energies_;
+  double power_ = 0;  ///< that they dissipate [W]
   // Of a share of consistent mass; empty without.
   std::vector<int> corners_;  ///< CellAverages
   std::vector<Real> factors_, shares_;

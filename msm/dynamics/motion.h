@@ -38,6 +38,7 @@ struct MotionOptions {
                              ///< needs some, or it flutters
   Viscosity viscosity = {};  ///< by kernels that of cells
   RelaxingCells relaxation = {};    ///< branches of cells, relaxed at the start
+  bool branch_energies = false;     ///< Motion::branch_energies() is asked for
   double mass_consistency = 0;      ///< share of consistent mass of explicit steps, 0 to 1: MassAverage.  With it every
                                     ///< velocity v of a step, of Motion too, is the momentum over the lumped mass
   bool lagged = false;              ///< dispersion uses the J of the previous step; Kot & Nagahashi (2015), sec. 7
@@ -54,6 +55,11 @@ struct MotionOptions {
 struct ForceNorms {
   double unbalanced = 0;  ///< at free unknowns
   double support = 0;     ///< at fixed unknowns
+};
+
+/// Of branches that relax [J].
+struct BranchEnergies {
+  double stored = 0, dissipated = 0;  ///< now; since they were relaxed
 };
 
 /// A model in motion, made at rest at X, nothing fixed, no load.  It keeps a reference to the model.
@@ -73,6 +79,10 @@ class Motion {
   virtual void relax() {}
   /// @return forces of the branches [N], n x 3; empty: there are none
   virtual NodalVectors relaxing_forces() const { return {}; }
+  /// With MotionOptions::branch_energies.
+  /// @return at the positions; dissipated exactly, but by kernels as a straight power over each call of advance() has
+  ///   it, of second order in its length; empty: there are no branches
+  virtual std::optional<BranchEnergies> branch_energies() const { return {}; }
   /// Makes steps.
   /// @param steps how many
   /// @return the norms of forces at the beginning of the last step

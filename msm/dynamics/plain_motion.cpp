@@ -38,6 +38,14 @@ NodalVectors PlainMotion::relaxing_forces() const {
   return f;
 }
 
+/// At the positions, one step after those that the branches were advanced to.
+std::optional<BranchEnergies> PlainMotion::branch_energies() const {
+  if (!overstrains_.acts()) return {};
+  Overstrains now = overstrains_;
+  now.advance(x_, dt_);
+  return BranchEnergies{now.energy(), now.dissipated()};
+}
+
 ForceNorms PlainMotion::advance(long steps) {
   ForceNorms norms;
   for (; steps > 0; --steps) norms = step();

@@ -19,6 +19,7 @@ class PlainMotion : public Motion {
   void set_state(const NodalVectors& x, const NodalVectors& v) override;
   void relax() override { overstrains_.relax(x_); }
   NodalVectors relaxing_forces() const override;
+  std::optional<BranchEnergies> branch_energies() const override;
   ForceNorms advance(long steps) override;
   NodalVectors positions() const override { return x_; }
   NodalVectors velocities() const override { return v_; }

@@ -187,7 +187,7 @@ std::vector<Spring> read_springs_of(const JsonPlace& document, const NodalVector
 }
 
 double version_of(const JsonPlace& document) {
-  return document.at("version").number(springs_version, springs_version_of_materials);
+  return document.at("version").number(springs_version, springs_version_of_branches);
 }
 
 void read_cells(const JsonPlace& document, Network& network) {
@@ -294,6 +294,27 @@ void read_laws(const JsonPlace& document, const SpringOrder& order, MassSpringMo
   laws.require_known(known);
 }
 
+/// Branches of the cells, from version 6 on.
+void read_relaxation(const JsonPlace& document, SpringsFile& file) {
+  const auto place = document.find("relaxation");
+  if (!place) return;
+  if (version_of(document) < springs_version_of_branches)
+    place->refuse("is in a file of an earlier version", fmt::format("version {}", springs_version_of_branches));
+  if (const std::string why = lacks(file.model, Capability::relaxation); !why.empty())
+    place->refuse(fmt::format("does not suit these springs: {}", why), "beside cells of one material");
+  std::vector<std::string> known = {"share", "time_s"};
+  const std::vector<double> share = place->at("share").numbers(1, 0, nullptr, smallest_of_file);
+  if (share.empty()) place->at("share").refuse("is empty", "one branch at least");
+  const std::vector<double> time = place->at("time_s").numbers(1, share.size(), "shares", smallest_of_file);
+  for (std::size_t i = 0; i < share.size(); ++i) file.relaxing.relaxation.branches.push_back({share[i], time[i]});
+  for (auto& [key, constant] : branch_constants(file.relaxing.cells)) {
+    constant = place->at(key).number(std::string_view(key) == "coupling" ? -largest_number_of_file : 0,
+                                     largest_number_of_file);
+    known.emplace_back(key);
+  }
+  place->require_known(known);
+}
+
 /// The internal forces vanish at rest.
 void require_rest(const JsonPlace& document, const MassSpringModel& model) {
   const Network& network = model.network;
@@ -363,10 +384,11 @@ void require_format(const JsonPlace& document) {
   if (const auto format = document.find("format"); !format || format->text() != springs_format)
     document.refuse("is no springs file", fmt::format("\"format\": \"{}\"", springs_format));
   if (const double version = version_of(document); version != std::floor(version))
-    document.at("version").refuse("is no whole number", "1 to 5");
-  document.require_known({"format",    "version",   "origin",  "material", "density_kg_m3", "regions", "grip_m",
-                          "grip_from", "derived",   "laws",    "nodes",    "springs",       "cells",   "bonds",
-                          "carried",   "triangles", "patches", "anchors",  "loads",         "surface", "check"});
+    document.at("version").refuse("is no whole number", "1 to 6");
+  document.require_known({"format", "version",   "origin",  "material",  "density_kg_m3", "regions",
+                          "grip_m", "grip_from", "derived", "laws",      "nodes",         "springs",
+                          "cells",  "bonds",     "carried", "triangles", "patches",       "anchors",
+                          "loads",  "surface",   "check",   "relaxation"});
 }
 
 SpringsFile read_document(const JsonPlace& document) {
@@ -391,6 +413,7 @@ SpringsFile read_document(const JsonPlace& document) {
   read_materials(document, version_of(document), file);
   read_laws(document, order, file.model);
   if (!network.bonds.empty() && !law_of<Anchors>(file.model)) file.model.laws.emplace_back(Anchors{});
+  read_relaxation(document, file);
   require_rest(document, file.model);
   read_patches(document, file);
   read_supports_and_loads(document, file);

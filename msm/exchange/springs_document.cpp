@@ -286,7 +286,46 @@ void add_surface(const EmbeddedSurface& surface, DocumentWriter& out) {
   out.numbers({"surface", "weights"}, std::move(weights));
 }
 
-int version_of(const CellSet& cells) {
+/// Branches, and the constants of the cells that these have the shares of.
+void add_relaxation(const RelaxingCells& relaxing, DocumentWriter& out) {
+  if (!relaxing.acts()) return;
+  std::vector<double> share, time;
+  for (const RelaxationBranch& b : relaxing.relaxation.branches) {
+    share.push_back(b.share);
+    time.push_back(b.time);
+  }
+  out.numbers({"relaxation", "share"}, std::move(share));
+  out.numbers({"relaxation", "time_s"}, std::move(time), smallest_of_file);
+  for (const auto& [key, value] : branch_constants(relaxing.cells)) {
+    require_readable({"relaxation", key}, {value});
+    out.at({"relaxation", key}) = value;
+  }
+}
+
+/// What branches pull with after the steps of the check.
+void add_check_of_branches(const SpringsFile& springs, const NodalVectors& x, DocumentWriter& out) {
+  if (!springs.relaxing.acts()) return;
+  const Network& network = springs.model.network;
+  Overstrains branches(network, springs.relaxing);
+  std::vector<double> duration, progress;
+  NodalVectors f = NodalVectors::Zero(x.rows(), 3);
+  for (const CheckStep& step : check_steps(springs.relaxing.relaxation)) {
+    NodalVectors at = network.X + step.progress * (x - network.X);
+    carry(network.cells.carried, at);
+    branches.advance(at, step.duration);
+    f.setZero();
+    branches.add_forces(at, 0, f);
+    duration.push_back(step.duration);
+    progress.push_back(step.progress);
+  }
+  out.numbers({"check", "step_s"}, std::move(duration));
+  out.numbers({"check", "progress"}, std::move(progress));
+  out.vectors({"check", "branch_force_N"}, f);
+}
+
+int version_of(const SpringsFile& springs) {
+  if (springs.relaxing.acts()) return springs_version_of_branches;
+  const CellSet& cells = springs.model.network.cells;
   if (!cells.materials.empty()) return springs_version_of_materials;
   switch (cells.kind()) {
     case CellKind::none:
@@ -323,13 +362,18 @@ NodalVectors check_positions(const NodalVectors& X) {
   return x;
 }
 
+std::vector<CheckStep> check_steps(const Relaxation& relaxation) {
+  const double first = relaxation.branches.front().time, last = relaxation.branches.back().time;
+  return {{first / 3, 0.5}, {last, 1}, {2 * first, 1}};
+}
+
 SpringsDocument document_of(const SpringsFile& springs) {
   DocumentWriter out;
   const Network& network = springs.model.network;
   if (!network.cells.materials.empty() && !network.cells.cut())
     throw std::invalid_argument(
         "a springs file of several materials is of cut cells (allowed: these, or one material)");
-  out.document.head = {{"format", springs_format}, {"version", version_of(network.cells)}};
+  out.document.head = {{"format", springs_format}, {"version", version_of(springs)}};
   out.at({"origin"}) = origin_json(springs.origin);
   if (springs.material) out.at({"material"}) = moduli_json(*springs.material);
   out.at({"density_kg_m3"}) = springs.density;
@@ -338,6 +382,7 @@ SpringsDocument document_of(const SpringsFile& springs) {
   out.at({"grip_from"}) = springs.grip_from_cells ? "cells" : "surface";
   out.at({"derived"}) = springs.derived;
   add_laws(springs.model, out);
+  add_relaxation(springs.relaxing, out);
   add_network(network, springs.density, out);
   out.at({"patches"}) = Json::object();
   for (const auto& [name, nodes] : springs.patches) out.indices({"patches", name}, nodes);
@@ -352,6 +397,7 @@ SpringsDocument document_of(const SpringsFile& springs) {
   const NodalVectors x = check_positions(network.X);
   out.vectors({"check", "position_m"}, x);
   out.vectors({"check", "force_N"}, forces(springs.model, x));
+  add_check_of_branches(springs, x, out);
   return std::move(out.document);
 }
 

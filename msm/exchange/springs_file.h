@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "msm/dynamics/terms/relaxing_cells.h"
 #include "msm/embedding/embedding.h"
 #include "msm/laws/laws.h"
 #include "problem/material.h"
@@ -45,6 +46,7 @@ struct SpringsFile {
   double density = 1000;                      ///< [kg/m^3]; a node's mass is this times its volume share
   std::optional<IsotropicMaterial> material;  ///< what the springs stand for; empty: not known
   std::vector<SpringsRegion> regions;         ///< of the cells of material 1, 2, ...
+  RelaxingCells relaxing;                     ///< beside the laws, which are those of long times; none: elastic
   double grip = 0;  ///< depth [m] to which a support holds nodes, for nodes that are no mesh's
   bool grip_from_cells =
       false;  ///< measured from the surface of the cells that the body is cut into, not from the true one
@@ -94,5 +96,16 @@ std::string springs_as_json(const SpringsFile& springs);
 /// @param X positions at rest [m], n x 3
 /// @return positions [m], n x 3
 NodalVectors check_positions(const NodalVectors& X);
+
+/// A step of the motion by which a springs file's branches are checked: from the rest positions, relaxed, towards
+/// check_positions().
+struct CheckStep {
+  double duration;  ///< [s]
+  double progress;  ///< at its end, of the way there [1]
+};
+
+/// To half of the way, to its end, and held there, in steps of the branches' own times.
+/// @param relaxation with branches
+std::vector<CheckStep> check_steps(const Relaxation& relaxation);
 
 }  // namespace springproof

@@ -52,6 +52,8 @@ class BlockForces {
   virtual void relax(const Padded<Real>*) {}
   /// f += their forces at x, at the end of a step that they do not make.
   virtual void add_relaxing(const Padded<Real>*, Padded<Real>*) {}
+  /// What each of them has stored there [J].
+  virtual std::vector<double> branch_energies(const Padded<Real>*) { return {}; }
 };
 
 }  // namespace springproof

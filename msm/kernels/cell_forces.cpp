@@ -141,9 +141,9 @@ void CellForces<Real>::add_blocks(long begin, long end, const Padded<Real>* x, c
   add_bonds(begin, end, x, f);
 }
 
-/// Of blocks of one material.
+/// Blocks of one material.
 template <class Real>
-void CellForces<Real>::add_cells(long begin, long end, const Padded<Real>* x, const Padded<Real>* s, Padded<Real>* f) {
+CellList<Real> CellForces<Real>::part_of_list(long begin, long end) {
   CellList<Real> list = list_;
   list.springs = constants_[order_.material[begin]].springs;
   list.dashpots = constants_[order_.material[begin]].dashpots;
@@ -155,8 +155,16 @@ void CellForces<Real>::add_cells(long begin, long end, const Padded<Real>* x, co
     list.branch_count = static_cast<int>(branches_.size());
     list.branches = branches_.data();
     list.overstrains = overstrains_.data() + overstrain_count * kernels_->cell_list.cells * list.branch_count * begin;
+  }
+  return list;
+}
+
+template <class Real>
+void CellForces<Real>::add_cells(long begin, long end, const Padded<Real>* x, const Padded<Real>* s, Padded<Real>* f) {
+  const CellList<Real> list = part_of_list(begin, end);
+  if (relaxing())
     kernels_->cell_list.relaxing_forces(list, x, viscous_ ? s : nullptr, f);
-  } else if (viscous_)
+  else if (viscous_)
     kernels_->cell_list.viscous_forces(list, x, s, f);
   else
     kernels_->cell_list.forces(list, x, f);
@@ -194,8 +202,9 @@ void CellForces<Real>::add_bonds(long begin, long end, const Padded<Real>* x, Pa
   }
 }
 
+/// Into x_ and s_.
 template <class Real>
-void CellForces<Real>::add(const Padded<Real>* x, const Padded<Real>* s, Padded<Real>* f, bool) {
+void CellForces<Real>::place_carried(const Padded<Real>* x, const Padded<Real>* s) {
   const std::size_t nodes = order_.place.size();
   x_.assign(x, x + nodes);
   if (viscous_) s_.assign(s, s + nodes);
@@ -211,6 +220,11 @@ void CellForces<Real>::add(const Padded<Real>* x, const Padded<Real>* s, Padded<
     x_[c.point] = u;
     if (viscous_) s_[c.point] = v;
   }
+}
+
+template <class Real>
+void CellForces<Real>::add(const Padded<Real>* x, const Padded<Real>* s, Padded<Real>* f, bool) {
+  place_carried(x, s);
   add_blocks(0, order_.plan.blocks, x_.data(), s_.data(), f);
   for (auto c = carried_.rbegin(); c != carried_.rend(); ++c)
     for (int d = 0; d < 3; ++d) {
@@ -226,7 +240,15 @@ void CellForces<Real>::set_branches(const Relaxation& relaxation, const Averaged
   branches_.clear();
   for (const auto& [share, time] : relaxation.branches) {
     const BranchStep step = BranchStep::of(time_step / time);
-    branches_.push_back({static_cast<Real>(share), static_cast<Real>(step.decay), static_cast<Real>(step.phi)});
+    const double gain = share * step.phi, lost = -std::expm1(-time_step / time);
+    branches_.push_back({static_cast<Real>(share), static_cast<Real>(step.decay), static_cast<Real>(gain),
+                         static_cast<Real>(gain * lost)});
+  }
+  if (forms_.empty() && relaxing()) {
+    const LatticeAveraged<Real>& own = constants_[0].springs;
+    const double b = own.bending, k = own.coupling, of_b = list_.relaxing.bending, of_k = list_.relaxing.coupling;
+    list_.bending_of_branches.own = static_cast<Real>((b * of_b - k * of_k) / (b * b - k * k));
+    list_.bending_of_branches.other = static_cast<Real>((b * of_k - k * of_b) / (b * b - k * k));
   }
   overstrains_.assign(overstrain_count * kernels_->cell_list.cells * branches_.size() * order_.plan.blocks, Real(0));
 }
@@ -234,11 +256,16 @@ void CellForces<Real>::set_branches(const Relaxation& relaxation, const Averaged
 template <class Real>
 void CellForces<Real>::relax(const Padded<Real>* x) {
   const std::vector<CellBranch<Real>> kept = branches_;
-  for (CellBranch<Real>& branch : branches_) branch.decay = 0;  // P = -phi E whatever it was
+  for (CellBranch<Real>& branch : branches_) branch.decay = 0;  // P = E whatever it was
   const std::vector<Padded<Real>> still(order_.place.size(), Padded<Real>{});
   std::vector<Padded<Real>> unused = still;
   add(x, still.data(), unused.data(), false);
   branches_ = kept;
+  const std::size_t of_branch = overstrain_count * kernels_->cell_list.lanes;
+  for (std::size_t i = 0; i < overstrains_.size(); ++i) {  // gain E = loss P
+    const CellBranch<Real>& branch = branches_[i / of_branch % branches_.size()];
+    overstrains_[i] *= branch.gain / branch.loss;
+  }
 }
 
 template <class Real>
@@ -248,12 +275,24 @@ void CellForces<Real>::add_relaxing(const Padded<Real>* x, Padded<Real>* f) {
   const std::vector<Padded<Real>> still(order_.place.size(), Padded<Real>{});
   std::vector<Padded<Real>> with = still, without = still;
   add(x, still.data(), with.data(), false);
-  for (CellBranch<Real>& branch : branches_) branch.share = 0;
+  for (CellBranch<Real>& branch : branches_) branch.gain = branch.loss = 0;
   add(x, still.data(), without.data(), false);
   branches_ = branches;
   overstrains_ = kept;
   for (std::size_t p = 0; p < with.size(); ++p)
     for (int d = 0; d < 3; ++d) f[p].v[d] += with[p].v[d] - without[p].v[d];
+}
+
+template <class Real>
+std::vector<double> CellForces<Real>::branch_energies(const Padded<Real>* x) {
+  std::vector<double> stored(branches_.size(), 0);
+  if (coupled()) {
+    const std::vector<Padded<Real>> still(order_.place.size(), Padded<Real>{});
+    place_carried(x, still.data());
+    x = x_.data();
+  }
+  kernels_->cell_list.branch_energies(part_of_list(0, order_.plan.blocks), x, stored.data());
+  return stored;
 }
 
 template <class Real>

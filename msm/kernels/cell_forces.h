@@ -35,6 +35,7 @@ class CellForces : public BlockForces<Real> {
   bool relaxing() const override { return !branches_.empty(); }
   void relax(const Padded<Real>* x) override;
   void add_relaxing(const Padded<Real>* x, Padded<Real>* f) override;
+  std::vector<double> branch_energies(const Padded<Real>* x) override;
 
   /// Gives the cells branches, relaxed at rest.
   /// @param relaxation with branches or without
@@ -62,6 +63,8 @@ class CellForces : public BlockForces<Real> {
   void store_forms(const MeasuredCells& law);
   void store_anchors(const Network& network);
   void store_bonds(const Network& network);
+  CellList<Real> part_of_list(long begin, long end);
+  void place_carried(const Padded<Real>* x, const Padded<Real>* s);
   void add_cells(long begin, long end, const Padded<Real>* x, const Padded<Real>* s, Padded<Real>* f);
   void add_anchors(long begin, long end, const Padded<Real>* x, Padded<Real>* f) const;
   void add_bonds(long begin, long end, const Padded<Real>* x, Padded<Real>* f) const;

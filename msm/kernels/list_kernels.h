@@ -109,13 +109,15 @@ constexpr int area = 0, mean = 1, mixed = 4, variance = 7, per_edge = 10, count 
 constexpr int of_form = 171;  ///< MeasuredCells
 }  // namespace cell_number
 
-/// A branch that relaxes, over a step (problem/relaxation.h).
+/// A branch that relaxes, over a step (problem/relaxation.h): of strains E it keeps P, P <- decay P + E, and share Q =
+/// gain E - loss P before that, at the end of the step; gain = share phi, loss = gain (1 - decay).
 template <class Real>
 struct CellBranch {
-  Real share, decay, phi;
+  Real share, decay, gain, loss;
 };
-constexpr int overstrain_count = 18;  ///< numbers P of a branch of a cell, Q = P + phi E at the end of a step: of twice
-                                      ///< the deviatoric strain and of the hourglass components over the edge [1]
+/// Strains that branches follow: twice the deviatoric strain, whose third entry is minus the first two, and the
+/// hourglass components over the edge [1].
+constexpr int overstrain_count = 17;
 
 /// Cells in blocks of as many as a kernel computes together; an unused place of the last block repeats a cell without
 /// volume.
@@ -129,9 +131,14 @@ struct CellList {
   LatticeAveraged<Real> dashpots = {};  ///< the same times the time of retardation [s]; without a curve
   Real retardation = 0;                 ///< this time, for the forms
   LatticeAveraged<Real> relaxing = {};  ///< long-time moduli of the branches; without a curve
+  /// Of branches beside averaged springs, whose long-time moduli but for bending are theirs: bending modes of
+  /// overstrains V resist as `own` V + `other` (V of the other mode of the plane) of the springs would.
+  struct {
+    Real own = 1, other = 0;
+  } bending_of_branches = {};
   int branch_count = 0;
   const CellBranch<Real>* branches = nullptr;
-  Real* overstrains = nullptr;      ///< per block and branch each of overstrain_count in turn
+  Real* overstrains = nullptr;      ///< per vector of cells and branch each of overstrain_count in turn
   bool boxes = false;               ///< full cells that are no cubes: l that of the cube of their volume, rho p_i^2
   Real proportions[3] = {1, 1, 1};  ///< CellSet::proportions
   Real per_proportion[3] = {1, 1, 1};
@@ -140,12 +147,15 @@ struct CellList {
 template <class Real>
 struct CellListKernels {
   int cells;  ///< of a block
+  int lanes;  ///< of a vector
   /// f += forces of the cells at displacements u [m].
   void (*forces)(const CellList<Real>&, const Padded<Real>* u, Padded<Real>* f);
   /// f += forces of springs and dashpots.  Velocities are s times the fourth number of u.
   void (*viscous_forces)(const CellList<Real>&, const Padded<Real>* u, const Padded<Real>* s, Padded<Real>* f);
   /// The same with branches, whose overstrains become those of the end of the step; null s: no dashpots.
   void (*relaxing_forces)(const CellList<Real>&, const Padded<Real>* u, const Padded<Real>* s, Padded<Real>* f);
+  /// stored += energies [J] of the branches, one of each, at displacements u at the end of a step.
+  void (*branch_energies)(const CellList<Real>&, const Padded<Real>* u, double* stored);
 };
 
 }  // namespace springproof

@@ -28,6 +28,7 @@ class MovingModel {
         nodes_(std::move(conditions.first)),
         factor_(finite(conditions.second, "load_factor")) {
     const double density = model_->springs.density;
+    options.relaxation = model_->springs.relaxing;
     options.time_step = dt_ = checked_time_step(model_->model(), density, options);
     motion_ = make_motion(model_->model(), density, options);
     apply();
@@ -80,7 +81,12 @@ class MovingModel {
     return renew(v_, fresh_v_, [&] { return motion_->velocities(); });
   }
   const NodalVectors& forces() const {
-    return renew(f_, fresh_f_, [&] { return springproof::forces(model_->model(), positions()); });
+    return renew(f_, fresh_f_, [&] {
+      const NodalVectors of_branches = motion_->relaxing_forces();
+      NodalVectors f = springproof::forces(model_->model(), positions());
+      if (of_branches.size() > 0) f += of_branches;
+      return f;
+    });
   }
   double kinetic_energy() const {
     return 0.5 * (velocities().rowwise().squaredNorm().array() * model_->mass.array()).sum();

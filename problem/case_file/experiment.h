@@ -141,6 +141,7 @@ struct Experiment {
   std::vector<MaterialRegion> regions;                          ///< parts of the body that are of other materials
   std::vector<Load> loads;
   std::vector<AttachedMass> masses;            ///< beside the body's own
+  std::vector<SourceLocation> mass_locations;  ///< of each
   std::size_t weights = 0;                     ///< loads, the last of `loads`, that are the weight of `masses`
   std::vector<SourceLocation> load_locations;  ///< of the [[load]] that each of `loads` came from; may be empty
   std::vector<ModelChoice> models;             ///< empty: the reference alone is verified

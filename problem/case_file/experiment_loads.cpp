@@ -161,6 +161,7 @@ void read_masses(const TomlTable& document, Experiment& experiment) {
       if (other.name == mass.name)
         refuse(value, fmt::format("has the name '{}' of another mass", mass.name), "a name of its own");
     experiment.masses.push_back(mass);
+    experiment.mass_locations.push_back(location_of(value));
     for (Load& load : weight_of(mass, experiment.loads)) {
       experiment.loads.push_back(std::move(load));
       experiment.load_locations.push_back(location_of(value));

@@ -75,6 +75,8 @@ MeasuredValue read_quantity(const TomlTable& table, const Experiment& e) {
   MeasuredValue m{.name = read_own_name(table.at("name"), e.measured),
                   .quantity = read_row_name(table.at("quantity"), e),
                   .where = location_of(table.at("quantity"))};
+  if (std::any_of(e.measured.begin(), e.measured.end(), [&](const auto& other) { return other.history == m.name; }))
+    refuse(table.at("name"), fmt::format("'{}' is the name of a history", m.name), "a name of its own");
   if (is_distance(m.quantity) || is_deviation(m.quantity))
     refuse(table.at("quantity"), fmt::format("'{}' is a difference between computations", m.quantity),
            "a quantity that can be measured");
@@ -132,6 +134,9 @@ void read_samples(const TomlValue& value, Experiment& e, const std::string& sour
   const Named unit = unit_in(e.units, unit_of(all.quantity));
   const TomlValue file = table.at("file");
   e.histories.push_back(std::filesystem::path(value.file).parent_path() / as_text(file));
+  if (!std::filesystem::exists(e.histories.back()))
+    refuse(file, fmt::format("there is no file {}", e.histories.back().string()),
+           "a history, NAME.csv beside the case");
   const std::vector<HistorySample> samples = read_history(e.histories.back(), unit.name);
   const auto from_end = table.find("from_end");
   const bool subtracted = from_end && as_flag(*from_end);

@@ -153,6 +153,61 @@ expect "differences of other files" "results.json: not the results" diff "$work"
 echo '{"program": {"version": "0.1.0"}, "generated": "now", "cases": []}' >"$work/results.json"
 expect "differences of no numbers" "^error: .*: holds no number" diff "$work" "$work"
 
+# Measured values, histories, masses and branches.
+printf 'time_s,value_m,u_m\n0.5,-0.0061,1e-5\n1,-0.0062,1e-5\n' >"$work/creep.csv"
+measured='kinematics = "hencky"
+[body]
+geo = "block.geo"
+size_m = [0.1, 0.03, 0.03]
+cells = [[4, 1, 1], [8, 2, 2]]
+[material]
+youngs_modulus_Pa = 2e5
+poisson_ratio = 0.3
+density_kg_m3 = 1000
+[material.relaxation]
+branches = [{ share = 0.1, time_s = 0.3 }, { share = 0.05, time_s = 3 }]
+[[load]]
+on = "x_min"
+displacement_m = [0, 0, 0]
+[[load]]
+gravity_m_s2 = [0, 0, -9.81]
+[[mass]]
+name = "weight"
+at_m = [0.1, 0.015, 0.015]
+mass_kg = 0.05
+[compare]
+models = ["hybmss_avg"]
+measures = ["mean_displacement"]
+[reference]
+elements = []
+[[measured]]
+source = "here"
+licence = "none"
+values = [{ name = "sag", quantity = "mean_displacement.x_max.z", value = -0.01, u = 1e-4 }]
+histories = [{ name = "creep", quantity = "mean_displacement.x_max.z", file = "creep.csv" }]'
+# measured_as NAME PATTERN SED-EXPRESSION [CSV]: that case, spoilt; or its history, by the lines beside the columns
+measured_as() {
+  sed -E "$3" <<<"$measured" >"$work/bar.toml"
+  printf "${4:-time_s,value_m,u_m\\n0.5,-0.0061,1e-5\\n}" >"$work/creep.csv"
+  expect "$1" "$2" compare "$work/bar.toml" --out "$work/out"
+}
+measured_as "a value without u" 'bar.toml:29:11: measured.values.u: is missing .allowed: a finite number > 0' 's/, u = 1e-4//'
+measured_as "u = 0" 'bar.toml:29:[0-9]+: measured.values.u: is 0 ' 's/u = 1e-4/u = 0/'
+measured_as "a value in another unit" 'bar.toml:29:.*measured.values.value: is -10 m, more than twice the size' 's/-0.01/-10/'
+measured_as "a patch of a value that is not there" "bar.toml:29:.*the body has no patch 'x_mx' .*did you mean" 's/x_max.z", value/x_mx.z", value/'
+measured_as "no licence" 'bar.toml:26:1: measured.licence: is missing' '/^licence/d'
+measured_as "no such history" 'bar.toml:30:.*measured.histories.file: there is no file .*none.csv .allowed: a history' 's/creep.csv/none.csv/'
+measured_as "a name twice" "bar.toml:30:.*measured.histories.name: 'sag' is the name of another" 's/"creep"/"sag"/'
+measured_as "a gap" 'creep.csv:3:1: a field is empty .allowed: a number in each' '' 'time_s,value_m,u_m\n0.5,-1e-3,1e-5\n1,,1e-5\n'
+measured_as "other columns" 'creep.csv:1:1: the columns are time,value,u .allowed: time_s,value_m,u_m' '' 'time,value,u\n1,2,3\n'
+measured_as "other units" 'creep.csv:1:1: the columns are time_s,value_cm,u_cm ' '' 'time_s,value_cm,u_cm\n1,2,3\n'
+measured_as "times that descend" 'creep.csv:3:1: 0.5 s is not after 1 s ' '' 'time_s,value_m,u_m\n1,-1e-3,1e-5\n0.5,-1e-3,1e-5\n'
+measured_as "u = 0 in a history" 'creep.csv:2:1: u is 0 ' '' 'time_s,value_m,u_m\n1,-1e-3,0\n'
+measured_as "a mass beside the body" "bar.toml:17:1: mass 'weight': at_m: the point .0.2, .*lies outside the body .allowed: a point of the body" 's/^at_m = .0.1/at_m = [0.2/'
+measured_as "a mass below 0" 'bar.toml:20:.*mass.mass_kg: is -1 ' 's/mass_kg = 0.05/mass_kg = -1/'
+measured_as "a share below 0" 'bar.toml:11:.*relaxation.branches.share: is -0.1 ' 's/share = 0.1,/share = -0.1,/'
+measured_as "two branches of one time" 'bar.toml:11:.*branches.time_s: 3 s is that of another branch ' 's/time_s = 0.3/time_s = 3/'
+
 # What is no fault of the case.
 SPRINGPROOF_MESH_CACHE=$work/cache TMPDIR=/nowhere expect "no temporary folder" "^error: TMPDIR: cannot write /nowhere" compare "$work/good.toml" --out "$work/out"
 

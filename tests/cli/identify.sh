@@ -91,7 +91,9 @@ check "synthetic sets hold the truth" 'i[0]["synthetic"]["sets"] == 20 and all(1
 check "the width is uncertain, and shared out" 'i[0]["parameters"][0]["u_inputs"] > 0 and i[0]["parameters"][0]["inputs"][0]["input"] == "width"'
 check "the ratio is held and said" 'i[1]["parameters"][1]["held"] and i[1]["parameters"][1]["value"] == 0.3 and any("do not tell poisson_ratio" in s for s in i[1]["sentences"])'
 check "the modulus beside it is found" 'abs(i[1]["parameters"][0]["value"] / 2e5 - 1) < 2e-3 and not i[1]["parameters"][0]["held"]'
-grep -q "chi²" "$work/log" && grep -q "<svg" "$work/out/identify.html" || fail "text and page"
+check "correlations are of what is found" 'abs(i[0]["correlation"][0][1]) < 0.999 and i[1]["correlation"][0][1] < -0.9'
+check "what is not known of the fit's limits is in a prediction" 'i[0]["values"][1]["u_fit_numerical"] > 0 and i[0]["values"][1]["u_val"] > i[0]["values"][1]["u_fit_numerical"]'
+grep -q "chi²" "$work/log" && grep -q "<svg" "$work/out/identify.html" && grep -q "Synthetic sets" "$work/out/identify.html" && grep -q "direction 2" "$work/out/identify.html" || fail "text and page"
 
 # Every run is kept, from which it goes on.
 runs=$(ls "$work/out/runs" | wc -l)
@@ -105,6 +107,44 @@ check "but for what is missing" 'sum(one["runs"] for one in i) == 1'
 # From other starts the same is found.
 "$program" identify "$work/bar.toml" --only "modulus and density" --start 1e6,400 --out "$work/out" --resume >"$work/log" 2>&1 || fail "from another start" "$work/log"
 check "from another start" 'len(i) == 1 and abs(i[0]["parameters"][0]["value"] / 2e5 - 1) < 2e-3 and abs(i[0]["parameters"][1]["value"] / 1000 - 1) < 5e-3'
+
+# Of a body of voxels the coarsest comes first, in whatever order the case has them.
+python3 - >"$work/bar.stl" <<'PY'
+from itertools import product
+size = (0.1, 0.03, 0.03)
+print("solid bar")
+for axis, side in product(range(3), (0, 1)):
+    corners = [[0, 0], [1, 0], [1, 1], [0, 1]][:: 1 if side else -1]
+    points = []
+    for a, b in corners:
+        p = [0, 0, 0]
+        p[axis], p[(axis + 1) % 3], p[(axis + 2) % 3] = side, a, b
+        points.append([x * s for x, s in zip(p, size)])
+    for three in (points[:3], [points[0], *points[2:]]):
+        print("facet normal 0 0 0 outer loop", *[f"vertex {p[0]} {p[1]} {p[2]}" for p in three], "endloop endfacet")
+print("endsolid bar")
+PY
+for order in "0.015, 0.0075" "0.0075, 0.015"; do
+  { bar 2e5 $values | sed -e '/^geo/d; /^size_m/d; s/^cells.*/geo = "bar.stl"\nvoxel_edge_m = ['"$order"']/' -e '/input/,/^u = 3e-4/d' \
+      -e 's/on = "x_min"/on = "held"/; s/x_max/free/g' -e '/name = ".*frequency"/d'
+    cat <<'TOML'
+[[patch]]
+name = "held"
+beyond = { point_m = [0.001, 0, 0], normal = [-1, 0, 0] }
+[[patch]]
+name = "free"
+beyond = { point_m = [0.099, 0, 0], normal = [1, 0, 0] }
+[[identify]]
+name = "modulus"
+parameters = [{ of = "material.youngs_modulus_Pa", start = 1e5 }]
+fit = ["sag", "bare sag"]
+TOML
+  } >"$work/voxels.toml"
+  "$program" identify "$work/voxels.toml" --out "$work/out" >"$work/log" 2>&1 || fail "of voxels" "$work/log"
+  check "the coarsest lattice is the first: $order" 'i[0]["cells"][0][0] < i[0]["cells"][1][0]'
+  modulus=$(python3 -c 'import json, sys; print("%.6g" % json.load(open(sys.argv[1]))[0]["parameters"][0]["value"])' "$work/out/identify.json")
+  [ "${first:=$modulus}" = "$modulus" ] || fail "the order of the lattices changes the modulus from $first to $modulus"
+done
 
 refused "seeks nothing .allowed: a case with ..identify" identify "$work/truth.toml" --out "$work/out"
 refused "'mass' is no ..identify.. of the case .allowed: modulus and density, modulus and ratio" identify "$work/bar.toml" --only mass --out "$work/out"

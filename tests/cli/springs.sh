@@ -139,6 +139,45 @@ done
 grep -q '"version": 4' boxes.json && grep -q '"proportions": ' boxes.json || fail "no boxes"
 "$program" export case.toml --to springs --model hybmss --nu 0.4 --cells 4 3 1 --out refused.json >log 2>&1
 [ $? -eq 2 ] && grep -q "hybmss: needs cubes.*a model of boxes: hybmss_avg" log || fail "boxes of hybmss: $(cat log)"
+# A material that relaxes, in cells of every kind: branches and the check of their forces.
+branches='[material.relaxation]\nbranches = [{ share = 0.25, time_s = 0.02 }, { share = 0.15, time_s = 0.3 }]'
+sed "s/^density_kg_m3.*/&\n$branches/" refined.toml >relaxing_refined.toml
+sed -e 's/0\.25, 0\.4/0.4/' -e "s/^density_kg_m3.*/&\n$branches/" -e 's/^models = .*/models = ["hybmss_avg"]/' case.toml >relaxing.toml
+for form in json npz; do
+  export_to relaxing_refined.toml --to springs --out "relaxing_refined.$form"
+  export_to relaxing.toml --to springs --out "relaxing.$form"
+  export_to relaxing.toml --to springs --cells 4 3 1 --out "relaxing_boxes.$form"
+  export_to relaxing.toml --to springs --model hybmss --out "relaxing_springs.$form"
+  for file in relaxing_refined relaxing relaxing_boxes relaxing_springs; do
+    [ -n "$numpy" ] || break
+    off=$("$numpy" springs.py "$file.$form" | awk '{ print $3 }')
+    awk -v off="$off" 'BEGIN { exit !(off != "" && off < 1e-11) }' || fail "forces of $file.$form by examples/springs.py: off by '$off'"
+  done
+done
+grep -q '"version": 6' relaxing.json && grep -q '"branch_force_N": ' relaxing.json || fail "no branches"
+for form in lammps jolt; do
+  "$program" export relaxing.toml --to $form --out "refused.$form" >log 2>&1
+  [ $? -eq 2 ] && grep -qE "relaxing.toml:.*material.relaxation: has no place in this file, --to $form|--out: is refused" log && [ ! -e "refused.$form" ] || fail "--to $form: $(cat log)"
+done
+# It moves as the model by name, in a case of the same branches alone.
+{ sed '1s/^/kinematics = "hencky"\n/; s/^cells = .*/cells = [4, 2, 2]/; s/^models = .*/models = ["hybmss_avg", { file = "relaxing.json", label = "mine" }]/' relaxing.toml
+  printf '[reference]\nelements = []\n[[probe]]\nname = "tip"\nat_m = [0.2, 0.05, 0.05]\n[dynamics]\nduration_s = 0.3\nequilibrium = false\nsamples = 30\n'; } >moving.toml
+"$program" compare moving.toml --out moving --quiet >log 2>&1
+python3 - <<'END' || fail "a file with branches moves otherwise than the model: $(cat log)"
+import json
+ours, mine = json.load(open("moving/results.json"))["cases"][0]["histories"]
+ours, mine = (h["values"][h["names"].index("displacement.tip.z")] for h in (ours, mine))
+assert len(ours) > 20 and max(abs(a - b) for a, b in zip(ours, mine)) < 1e-9 * max(map(abs, ours))
+END
+# refused_as PATTERN SED-SCRIPT: the case, changed
+refused_as() {
+  sed "$2" moving.toml >refused.toml
+  "$program" compare refused.toml --out refused >log 2>&1
+  [ $? -eq 2 ] && [ "$(wc -l <log)" -eq 1 ] && grep -qE -- "$1" log || fail "$2: $(head -c 600 log)"
+}
+refused_as 'refused.toml:.*mine.*: /relaxation: is not that of the case' 's/share = 0.15/share = 0.16/'
+refused_as 'mine.*: /relaxation: the springs of the file relax' '/relaxation/d; /branches/d'
+refused_as 'mine.*: the springs of the file do not relax' 's/relaxing.json/hybmss_avg.json/'
 models=$(ls -- *.json | wc -l)
 [ "$models" -ge 15 ] || fail "only $models models"
 [ -n "$numpy" ] || echo "without numpy: forces in Python are not checked"
@@ -407,7 +446,7 @@ spoilt() {
   [ $status -eq 2 ] && [ "$(wc -l <log)" -eq 1 ] && grep -qE -- "$1" log && [ ! -e refused ] || fail "$2: status $status: $(head -c 600 log)"
 }
 spoilt 'own.toml:16:.*hybmss.json:[0-9]+:[0-9]+: not valid JSON' 's/"density_kg_m3": 1100.0/"density_kg_m3": NaN/'
-spoilt 'own.toml:16:.*hybmss.json: /version: is 6 \(allowed' 's/"version":  1/"version": 6/'
+spoilt 'own.toml:16:.*hybmss.json: /version: is 7 \(allowed' 's/"version":  1/"version": 7/'
 spoilt 'hybmss.json: /springs/nodes/0/1: is 45 \(allowed: a whole number from 0 to 44' 's/(^  "nodes": \[\[)0,[0-9]+\]/\10,45]/'
 spoilt 'hybmss.json: /springs/nodes/0/1: is 1.5 \(allowed: a whole number' 's/(^  "nodes": \[\[)0,[0-9]+\]/\10,1.5]/'
 spoilt 'hybmss.json: /nodes/mass_kg/0: is 0.0 \(allowed: a finite number >= 1e-30' 's/("mass_kg": \[)[^,]*/\10.0/'

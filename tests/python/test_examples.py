@@ -1,10 +1,12 @@
 """examples/*.py: each runs, and the springs file's body hangs as compare says."""
+import importlib.util
 import os
 import pathlib
 import re
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 import springproof as sp
 
@@ -130,3 +132,27 @@ def test_own_springs(tmp_path):
     assert {model for _, model in off} >= {"van_gelder", "msm_18", "hybmss_avg"} and (tmp_path / "own-report" / "report.html").is_file()
     for nu in ("0.25", "0.4"):
         assert off[nu, "hybmss_avg"] < 5 and off[nu, "hybmss_avg"] < off[nu, "van_gelder"] < 100, out
+
+
+def test_a_material_that_relaxes(tmp_path):
+    """What examples/springs.py makes of a file's branches, in steps under a load, is what the library makes of them."""
+    program = sp.find_program()
+    if not program:
+        pytest.skip("no program springproof")
+    run(program, "export", "motion/relaxing_bar", "--to", "springs", "--out", "bar.json", cwd=tmp_path)
+    name = importlib.util.spec_from_file_location("springs", EXAMPLES / "springs.py")
+    springs = importlib.util.module_from_spec(name)
+    name.loader.exec_module(springs)
+    model, s = sp.read_springs(tmp_path / "bar.json"), springs.load(tmp_path / "bar.json")
+    motion, x = model.motion([]), model.positions.copy()
+    v, load = np.zeros(x.shape), 1e-3 * np.sin(np.arange(x.size)).reshape(x.shape)
+    motion.set_forces(load)
+    motion.set_state(x, v)
+    motion.step(300)
+    assert springs.time_step(s) == pytest.approx(motion.time_step)
+    springs.time_step = lambda s: motion.time_step
+    for _ in range(300):
+        springs.step(s, x, v, load)
+    moved = abs(x - model.positions).max()
+    np.testing.assert_allclose(motion.positions, x, atol=1e-10 * moved)
+    assert abs(springs.branch_forces(s, x)).max() > 1e-3 * abs(springs.forces(s, x)).max()

@@ -46,14 +46,17 @@ bool is_body(const std::string& name) {
   return std::find(endings.begin(), endings.end(), extension_of(name)) != endings.end();
 }
 
-Experiment read_case(const std::string& name) {
+Experiment read_case(const ExportRequest& request) {
+  const std::string& name = request.what;
   const std::vector<fs::path> found = find_cases({name});
   if (found.size() > 1) throw InputError(fmt::format("{} is a folder of {} cases; name one", name, found.size()));
   Experiment experiment = read_experiment(found.front());
-  if (experiment.relaxation.acts())
-    throw InputError(
-        experiment.relaxation_where,
-        "material.relaxation: has no place in exported files, whose springs would not relax (allowed: none)");
+  const bool holds_branches = request.to == "springs" && fs::path(request.out).extension() != ".vtu";
+  if (experiment.relaxation.acts() && !holds_branches)
+    throw InputError(experiment.relaxation_where,
+                     fmt::format("material.relaxation: has no place in this file, --to {}, whose springs would not "
+                                 "relax (allowed with branches: --to springs, as .json or .npz)",
+                                 request.to));
   return experiment;
 }
 
@@ -75,7 +78,7 @@ int export_calculix(const ExportRequest& request) {
   if (!request.model.empty() || request.voxels || request.moduli.youngs_modulus || !request.size.empty() ||
       !request.hold.empty() || !request.load.empty())
     throw InputError("--to calculix: a deck has the case's elements and material (allowed: --poisson-ratio, --cells)");
-  const Experiment experiment = read_case(request.what);
+  const Experiment experiment = read_case(request);
   calculix::require_counterpart(experiment);
   const IsotropicMaterial material = material_of(experiment, request.moduli.poisson_ratio);
   const std::string file = request.out.empty() ? experiment.name + ".inp" : request.out;
@@ -183,7 +186,7 @@ Mesh carried_vertices(const ExportRequest& request, const PreparedCase& prepared
 
 /// `cut`: of cut cells where the model has them and the case does not say otherwise.
 SpringsFile springs_of(const ExportRequest& request, bool cut = false) {
-  const Experiment of_case = is_body(request.what) ? Experiment() : read_case(request.what);
+  const Experiment of_case = is_body(request.what) ? Experiment() : read_case(request);
   if (!cut && request.to != "jolt")  // each of its springs has a stiffness of its own
     require_one_material(of_case, fmt::format("export --to {} of whole cubes", request.to));
   Experiment e = is_body(request.what) ? body_alone(request) : one_of_each(of_case, request);
@@ -299,7 +302,7 @@ int export_lammps(const ExportRequest& request) {
 int export_engine(const ExportRequest& request) {
   const SpringsFile springs = springs_of(for_engine(request));
   return export_to_engine(request, springs,
-                          is_body(request.what) ? held_patches(request) : held_patches(read_case(request.what)));
+                          is_body(request.what) ? held_patches(request) : held_patches(read_case(request)));
 }
 
 /// A form of export: a row.

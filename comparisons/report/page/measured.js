@@ -33,6 +33,34 @@ const measuredDrawing = result => ({
   make: () => measuredChart(result.validation.filter(v => isNumber(v.ratio))),
 });
 
+/// Samples of a history in time: measured within 2 u_D, simulated.
+function historyChart(values) {
+  const {ink, grid, band, soft} = colors();
+  const {unit, factor} = displayUnit(values[0].quantity, values[0].unit, values.flatMap(v => [v.simulated, v.measured]));
+  const at = of => values.map(v => ({x: v.time, y: isNumber(of(v)) ? factor * of(v) : null}));
+  const edge = {pointRadius: 0, borderWidth: 0, backgroundColor: band, borderColor: band};
+  const measured = {type: 'line', label: 'measured', data: at(v => v.measured), borderColor: ink, backgroundColor: ink, pointRadius: 5, showLine: false};
+  const simulated = {...lineDataset(values[0].model, values[0].model, at(v => v.simulated)), pointRadius: 3};
+  const options = baseOptions();
+  options.plugins.legend.labels = {...options.plugins.legend.labels, filter: item => item.text !== ''};
+  options.plugins.tooltip = {callbacks: {title: () => '', label: ({dataset, raw}) => `${dataset.label}: ${number(raw.y, 4)} ${unit} at ${number(raw.x, 4)} s`}};
+  options.scales = {
+    x: {type: 'linear', title: {display: true, text: 'time under the load [s]', color: ink}, grid: {color: grid}, ticks: {color: ink}},
+    y: {title: {display: true, text: `${values[0].quantity.replace(/_/g, ' ')} [${unit}]`, color: ink}, grid: {color: grid},
+        ticks: {color: ink, callback: value => number(value, 3)}},
+  };
+  return {type: 'line', options, data: {datasets: [measured, simulated,
+    {...edge, label: 'measured ± 2 u_D', data: at(v => v.measured + 2 * v.u_measured), fill: '+1', borderColor: soft},
+    {...edge, label: '', data: at(v => v.measured - 2 * v.u_measured)}]}};
+}
+
+const historyDrawings = result => distinct(result.validation.map(v => v.history)).filter(Boolean).map((name, i) => ({
+  name: `${result.key}-measured-history-${i + 1}`,
+  caption: `${result.name}: ${name}, measured and by ${result.validation[0].model}`,
+  notes: [`${name}: the shaded band is 2 u_D on both sides of what was measured.`],
+  make: () => historyChart(result.validation.filter(v => v.history === name && isNumber(v.measured))),
+}));
+
 function validationTable(values) {
   const write = unit => column('', unit, values.filter(v => v.unit === unit).flatMap(v => [v.simulated, v.measured]).filter(isNumber));
   const row = v => {
@@ -70,9 +98,15 @@ function measuredSection(section) {
       el('h3', {}, 'Whose share'), sharesTable(result.validation.filter(v => !v.fitted)),
       el('p', {class: 'note'}, 'An input is changed by its uncertainty; of values beside a fitted one only what the fit does not answer to is shown. “Instead” is another choice, not part of u_input. ' +
          distinct(result.validation.map(v => `Measured: ${v.source}; ${v.licence}.`)).join(' ')));
-    const draw = () => plot.draw(measuredDrawing(result));
+    const curves = historyDrawings(result).map(drawing => ({drawing, node: figure()}));
+    plot.node.after(...curves.map(({node}) => node.node));
+    const draw = () => {
+      plot.draw(measuredDrawing(result));
+      for (const {drawing, node} of curves) node.draw(drawing);
+    };
     charts.push(draw);
     draw();
   }
-  return {has: id => having.some(c => c.id === id), show: () => {}};
+  return {has: id => having.some(c => c.id === id), show: () => {},
+          drawings: result => result.validation.length > 0 ? [measuredDrawing(result), ...historyDrawings(result)] : []};
 }

@@ -70,19 +70,25 @@ SPRINGPROOF_INLINE LatticeAveraged<Lanes<Real>> times_area(const LatticeAveraged
           a * law.coupling, a * law.torsion, a * law.twist,  a * law.warping};
 }
 
-/// w += (hourglass springs) v, in the centroid of the filled part: AveragedSprings::add_forces() in sums over the
-/// corners.
+constexpr int to_centroid = 4;  // mean / 2, of twice the second differences
+
+/// Components of the patterns in the centroid of the filled part.
 template <class Real>
-SPRINGPROOF_INLINE void add_hourglass_forces(const LatticeAveraged<Lanes<Real>>& law, const Cells<Real>& c,
-                                             const Lanes<Real> (&v)[4][3], Lanes<Real> (&w)[4][3]) {
-  using V = Lanes<Real>;
-  const V* const rho = c.variance;
-  V H[3][3], added[3][3];
-  constexpr Real shift = 4;  // mean / 2 to the centroid, of twice the second differences
+SPRINGPROOF_INLINE void in_centroid(const Cells<Real>& c, const Lanes<Real> (&v)[4][3], Lanes<Real> (&H)[3][3]) {
   for (int j = 0; j < 3; ++j) {
-    const V third = shift * v[3][j];
+    const Lanes<Real> third = Real(to_centroid) * v[3][j];
     for (int m = 0; m < 3; ++m) H[m][j] = v[m][j] + c.mean[m] * third;
   }
+}
+
+/// w += forces of hourglass springs of H and of the last pattern's components.
+template <class Real>
+SPRINGPROOF_INLINE void add_forces_of_centroid(const LatticeAveraged<Lanes<Real>>& law, const Cells<Real>& c,
+                                               const Lanes<Real> (&H)[3][3], const Lanes<Real> (&last)[3],
+                                               Lanes<Real> (&w)[4][3]) {
+  using V = Lanes<Real>;
+  const V* const rho = c.variance;
+  V added[3][3];
   for (int y = 0; y < 3; ++y) {
     const int z = (y + 1) % 3, x = (y + 2) % 3;
     const V bending = rho[y] * law.bending, coupling = rho[y] * law.coupling, sides = rho[z] + rho[x];
@@ -91,7 +97,7 @@ SPRINGPROOF_INLINE void add_hourglass_forces(const LatticeAveraged<Lanes<Real>>&
     added[y][y] = law.torsion * (sides * H[y][y] + rho[z] * H[x][x] + rho[x] * H[z][z]) +
                   (Real(0.5) * law.twist) * sides * H[y][y];
     const V warping = Real(0.3 / 2.3) * rho[z] * rho[x] + Real(1 / 2.3) * rho[y] * sides;
-    w[3][y] += law.warping * warping * v[3][y];
+    w[3][y] += law.warping * warping * last[y];
   }
   for (int j = 0; j < 3; ++j) {
     V turned = 0;
@@ -99,8 +105,36 @@ SPRINGPROOF_INLINE void add_hourglass_forces(const LatticeAveraged<Lanes<Real>>&
       w[m][j] += added[m][j];
       turned += c.mean[m] * added[m][j];
     }
-    w[3][j] += shift * turned;
+    w[3][j] += Real(to_centroid) * turned;
   }
+}
+
+/// w += (hourglass springs) v: AveragedSprings::add_forces() in sums over the corners.
+template <class Real>
+SPRINGPROOF_INLINE void add_hourglass_forces(const LatticeAveraged<Lanes<Real>>& law, const Cells<Real>& c,
+                                             const Lanes<Real> (&v)[4][3], Lanes<Real> (&w)[4][3]) {
+  Lanes<Real> H[3][3];
+  in_centroid(c, v, H);
+  add_forces_of_centroid(law, c, H, v[3], w);
+}
+
+/// The same of v and of the branches' overstrains Z in one go.
+template <class Real>
+SPRINGPROOF_INLINE void add_hourglass_forces(const CellList<Real>& list, const LatticeAveraged<Lanes<Real>>& law,
+                                             const Cells<Real>& c, const Lanes<Real> (&v)[4][3],
+                                             const Lanes<Real> (&Z)[4][3], Lanes<Real> (&w)[4][3]) {
+  const auto [own, other] = list.bending_of_branches;
+  Lanes<Real> H[3][3], of_branches[3][3], last[3];
+  in_centroid(c, v, H);
+  in_centroid(c, Z, of_branches);
+  for (int y = 0; y < 3; ++y) {
+    const int z = (y + 1) % 3, x = (y + 2) % 3;
+    H[y][y] += of_branches[y][y];
+    H[z][x] += own * of_branches[z][x] + other * of_branches[x][z];
+    H[x][z] += own * of_branches[x][z] + other * of_branches[z][x];
+    last[y] = v[3][y] + Z[3][y];
+  }
+  add_forces_of_centroid(law, c, H, last, w);
 }
 
 /// E's eigenvalues on its diagonal, eigenvectors as the columns of Q, by Jacobi's rotations: four rounds leave less
@@ -142,6 +176,7 @@ SPRINGPROOF_INLINE Lanes<Real> logarithm_over(const Lanes<Real>& t) {
 }
 
 constexpr int strain_of[6][2] = {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {2, 0}, {0, 1}};
+constexpr int deviator_of[5][2] = {{0, 0}, {1, 1}, {1, 2}, {2, 0}, {0, 1}};
 
 /// s = M y, M by its lower triangle.
 template <class Real>
@@ -231,13 +266,13 @@ SPRINGPROOF_INLINE void add_rates(const Principal<Real>& at, const Lanes<Real>& 
     for (int j = 0; j < 3; ++j) y[6 + 3 * m + j] += norm_of_pattern<Real>(m) * times * v_rate[m][j];
 }
 
-/// P = dW/dF over the edge, and w of the patterns over their norm, of s = dW/dy.
+/// P = dW/dF over the edge, and w += that of the patterns over their norm, of s = dW/dy.
 template <class Real>
 SPRINGPROOF_INLINE void measured_stress(const Principal<Real>& at, const Lanes<Real> (&F)[3][3],
                                         const Lanes<Real> (&s)[18], Lanes<Real> (&P)[3][3], Lanes<Real> (&w)[4][3]) {
   using V = Lanes<Real>;
   for (int m = 0; m < 4; ++m)
-    for (int j = 0; j < 3; ++j) w[m][j] = norm_of_pattern<Real>(m) * s[6 + 3 * m + j];
+    for (int j = 0; j < 3; ++j) w[m][j] += norm_of_pattern<Real>(m) * s[6 + 3 * m + j];
   const V(&Q)[3][3] = at.Q;
   V T[3][3], FQ[3][3];
   for (int p = 0; p < 3; ++p)
@@ -257,46 +292,103 @@ SPRINGPROOF_INLINE void measured_stress(const Principal<Real>& at, const Lanes<R
   }
 }
 
-/// Sums of the branches' overstrains by their shares, of twice the strain (entries strain_of) and of v, which P of the
-/// next step takes from these.
+/// What branches follow (overstrain_count).
 template <class Real>
-SPRINGPROOF_INLINE void relax(const CellList<Real>& list, Real* P, const Lanes<Real> (&D)[3][3],
-                              const Lanes<Real> (&v)[4][3], Lanes<Real> (&Z)[overstrain_count]) {
+SPRINGPROOF_INLINE void strains_of_branches(const Lanes<Real> (&D)[3][3], const Lanes<Real> (&v)[4][3],
+                                            Lanes<Real> (&z)[overstrain_count]) {
   using V = Lanes<Real>;
-  V z[overstrain_count];
-  for (int e = 0; e < 6; ++e) {
-    const int i = strain_of[e][0], j = strain_of[e][1];
-    z[e] = (D[i][j] + D[j][i]) + (D[0][i] * D[0][j] + D[1][i] * D[1][j] + D[2][i] * D[2][j]);
-  }
-  const V mean = Real(1.0 / 3) * (z[0] + z[1] + z[2]);
-  for (int e = 0; e < 3; ++e) z[e] -= mean;
+  const auto twice = [&](int i, int j) -> V {
+    return (D[i][j] + D[j][i]) + (D[0][i] * D[0][j] + D[1][i] * D[1][j] + D[2][i] * D[2][j]);
+  };
+  for (int e = 0; e < 5; ++e) z[e] = twice(deviator_of[e][0], deviator_of[e][1]);
+  const V mean = Real(1.0 / 3) * (z[0] + z[1] + twice(2, 2));
+  for (int e = 0; e < 2; ++e) z[e] -= mean;
   for (int m = 0; m < 4; ++m)
-    for (int j = 0; j < 3; ++j) z[6 + 3 * m + j] = v[m][j];
-  for (V& sum : Z) sum = 0;
-  for (int b = 0; b < list.branch_count; ++b) {
-    const auto [share, decay, phi] = list.branches[b];
-    for (int e = 0; e < overstrain_count; ++e, P += cells<Real>) {
-      const V now = phi * z[e], Q = load(P) + now;
-      Z[e] += share * Q;
-      store<Real>(decay * Q - now, P);
+    for (int j = 0; j < 3; ++j) z[5 + 3 * m + j] = v[m][j];
+}
+
+template <class Real>
+SPRINGPROOF_INLINE void patterns_of(const Lanes<Real> (&Z)[overstrain_count], Lanes<Real> (&of_patterns)[4][3]) {
+  for (int m = 0; m < 4; ++m)
+    for (int j = 0; j < 3; ++j) of_patterns[m][j] = Z[5 + 3 * m + j];
+}
+
+/// Sums of the branches' overstrains by their shares, and P of the next step.
+/// @tparam count of the branches; 0: any
+template <int count, class Real>
+SPRINGPROOF_INLINE void relax(const CellList<Real>& list, Real* P, const Lanes<Real> (&z)[overstrain_count],
+                              Lanes<Real> (&Z)[overstrain_count]) {
+  using V = Lanes<Real>;
+  const int branches = count > 0 ? count : list.branch_count;
+  Real gain = 0;
+  for (int b = 0; b < branches; ++b) gain += list.branches[b].gain;
+  for (int e = 0; e < overstrain_count; ++e) {
+    Real* of_branch = P + e * lanes<Real>;
+    V sum = gain * z[e];
+    for (int b = 0; b < branches; ++b, of_branch += overstrain_count * lanes<Real>) {
+      prefetch(of_branch + overstrain_count * lanes<Real> * branches);  // of the next vector
+      const V before = load(of_branch);
+      sum -= list.branches[b].loss * before;
+      store<Real>(list.branches[b].decay * before + z[e], of_branch);
     }
+    Z[e] = sum;
   }
 }
 
-/// P += G F Z, w += (hourglass springs) Z.
 template <class Real>
-SPRINGPROOF_INLINE void add_relaxing_stress(const LatticeAveraged<Lanes<Real>>& law, const Cells<Real>& c,
-                                            const Lanes<Real> (&F)[3][3], const Lanes<Real> (&Z)[overstrain_count],
-                                            Lanes<Real> (&P)[3][3], Lanes<Real> (&w)[4][3]) {
-  for (int i = 0; i < 3; ++i) {
-    P[i][0] += law.shear * (F[i][0] * Z[0] + F[i][1] * Z[5] + F[i][2] * Z[4]);
-    P[i][1] += law.shear * (F[i][0] * Z[5] + F[i][1] * Z[1] + F[i][2] * Z[3]);
-    P[i][2] += law.shear * (F[i][0] * Z[4] + F[i][1] * Z[3] + F[i][2] * Z[2]);
+SPRINGPROOF_INLINE void relax(const CellList<Real>& list, Real* P, const Lanes<Real> (&D)[3][3],
+                              const Lanes<Real> (&v)[4][3], Lanes<Real> (&Z)[overstrain_count]) {
+  Lanes<Real> z[overstrain_count];
+  strains_of_branches<Real>(D, v, z);
+  switch (list.branch_count) {
+    case 1:
+      return relax<1>(list, P, z, Z);
+    case 2:
+      return relax<2>(list, P, z, Z);
+    default:
+      return relax<0>(list, P, z, Z);
   }
-  Lanes<Real> of_patterns[4][3];
+}
+
+/// Energy over the edge of overstrains Q of a share of 1.
+template <class Real>
+SPRINGPROOF_INLINE Lanes<Real> energy_of(const LatticeAveraged<Lanes<Real>>& law, const Cells<Real>& c,
+                                         const Lanes<Real> (&Q)[overstrain_count]) {
+  using V = Lanes<Real>;
+  V square = Real(2) * (Q[0] * Q[0] + Q[1] * Q[1] + Q[0] * Q[1]), of_patterns = 0, v[4][3], w[4][3];
+  for (int e = 2; e < 5; ++e) square += Real(2) * Q[e] * Q[e];
+  patterns_of(Q, v);
+  for (auto& of_pattern : w)
+    for (V& entry : of_pattern) entry = 0;
+  add_hourglass_forces(law, c, v, w);
   for (int m = 0; m < 4; ++m)
-    for (int j = 0; j < 3; ++j) of_patterns[m][j] = Z[6 + 3 * m + j];
-  add_hourglass_forces(law, c, of_patterns, w);
+    for (int j = 0; j < 3; ++j) of_patterns += v[m][j] * w[m][j];
+  return Real(0.25) * law.shear * square + Real(0.5) * of_patterns;
+}
+
+/// A step of the branches: their stress over the edge, P = G F Z, and w += forces of the hourglass springs of v and Z,
+/// of measured cells of Z.
+template <LatticeCurve curve, class Real>
+SPRINGPROOF_INLINE void add_branches(const CellList<Real>& list, Real* overstrains,
+                                     const LatticeAveraged<Lanes<Real>>& springs, const Cells<Real>& c,
+                                     const Lanes<Real> (&D)[3][3], const Lanes<Real> (&F)[3][3],
+                                     const Lanes<Real> (&v)[4][3], Lanes<Real> (&P)[3][3], Lanes<Real> (&w)[4][3]) {
+  using V = Lanes<Real>;
+  V Z[overstrain_count], of_patterns[4][3], stress[5];
+  relax(list, overstrains, D, v, Z);
+  const V shear = c.area * list.relaxing.shear;
+  for (int e = 0; e < 5; ++e) stress[e] = shear * Z[e];
+  const V third = -(stress[0] + stress[1]);
+  for (int i = 0; i < 3; ++i) {
+    P[i][0] = F[i][0] * stress[0] + F[i][1] * stress[4] + F[i][2] * stress[3];
+    P[i][1] = F[i][0] * stress[4] + F[i][1] * stress[1] + F[i][2] * stress[2];
+    P[i][2] = F[i][0] * stress[3] + F[i][1] * stress[2] + F[i][2] * third;
+  }
+  patterns_of(Z, of_patterns);
+  if constexpr (curve == LatticeCurve::none)
+    add_hourglass_forces(times_area(list.relaxing, c.area), c, of_patterns, w);
+  else
+    add_hourglass_forces(list, springs, c, v, of_patterns, w);
 }
 
 /// Forces of a vector of cells, the lanes from `at` of their block; `rates`: velocities of the corners.
@@ -310,15 +402,19 @@ SPRINGPROOF_INLINE void forces_of_cells(const CellList<Real>& list, long block, 
   if (list.boxes) stretch(list, D, S);
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) F[i][j] = i == j ? D[i][j] + Real(1) : D[i][j];
+  turned_back(F, S, v);
+  for (auto& of_pattern : w)
+    for (V& entry : of_pattern) entry = 0;
+  const LatticeAveraged<V> springs = times_area(list.springs, c.area);
+  V of_branches[3][3];  // here, where fewest numbers are kept beside them
+  if constexpr (relaxing)
+    add_branches<curve>(list, list.overstrains + overstrain_count * list.branch_count * (cells<Real> * block + at),
+                        springs, c, D, F, v, of_branches, w);
+  else if constexpr (curve != LatticeCurve::none)
+    add_hourglass_forces(springs, c, v, w);
   invert(D, F, inverse_transposed, dilatation);
   if constexpr (curve == LatticeCurve::neo_hooke_isochoric)  // the others have the logarithm of J
     stdx::where(dilatation < Real(-1), dilatation) = Real(__builtin_nan(""));
-  for (auto& of_pattern : w)
-    for (V& entry : of_pattern) entry = 0;
-  turned_back(F, S, v);
-  V Z[overstrain_count];
-  if constexpr (relaxing)
-    relax(list, list.overstrains + overstrain_count * cells<Real> * list.branch_count * block + at, D, v, Z);
   constexpr bool measured = curve == LatticeCurve::none;
   V rate[3][3], S_rate[3][4];
   if constexpr (viscous) {
@@ -337,11 +433,11 @@ SPRINGPROOF_INLINE void forces_of_cells(const CellList<Real>& list, long block, 
     times_form<Real>(list.forms + cell_number::of_form * cells<Real> * block + at, y, s);
     measured_stress<Real>(principal, F, s, P, w);
   } else {
-    const LatticeAveraged<V> springs = times_area(list.springs, c.area);
-    add_hourglass_forces(springs, c, v, w);
     first_stress<curve>(springs, D, inverse_transposed, dilatation, P);
   }
-  if constexpr (relaxing) add_relaxing_stress<Real>(times_area(list.relaxing, c.area), c, F, Z, P, w);
+  if constexpr (relaxing)
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) P[i][j] += of_branches[i][j];
   if constexpr (viscous && !measured) {
     const LatticeAveraged<V> dashpots = times_area(list.dashpots, c.area);
     add_viscous_stress(dashpots, F, inverse_transposed, rate, P);
@@ -415,14 +511,50 @@ void relaxing_forces(const CellList<Real>& list, const Padded<Real>* u, const Pa
   s ? forces_of_curve<true, true>(list, u, s, f) : forces_of_curve<false, true>(list, u, s, f);
 }
 
+/// Adds the energies of the branches of a vector of cells.
+template <class Real>
+SPRINGPROOF_INLINE void add_branch_energies(const CellList<Real>& list, long block, int at, const Corners<Real>& u,
+                                            double* stored) {
+  using V = Lanes<Real>;
+  const Cells<Real> c(list.numbers + cell_number::count * cells<Real> * block + at);
+  V D[3][3], S[3][4], F[3][3], v[4][3], z[overstrain_count], Q[overstrain_count];
+  patterns_of_cells<Real>(u, at, c, D, S);
+  if (list.boxes) stretch(list, D, S);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) F[i][j] = i == j ? D[i][j] + Real(1) : D[i][j];
+  turned_back(F, S, v);
+  strains_of_branches<Real>(D, v, z);
+  const Real* P = list.overstrains + overstrain_count * list.branch_count * (cells<Real> * block + at);
+  for (int b = 0; b < list.branch_count; ++b) {
+    for (int e = 0; e < overstrain_count; ++e, P += lanes<Real>)
+      Q[e] = list.branches[b].gain * z[e] - list.branches[b].loss * load(P);
+    const V energy = energy_of(times_area(list.relaxing, c.area), c, Q) / (list.branches[b].share * c.per_edge);
+    alignas(64) Real of_cells[lanes<Real>];
+    store<Real>(energy, of_cells);
+    for (const Real of_cell : of_cells) stored[b] += double(of_cell);
+  }
+}
+
+template <class Real>
+void branch_energies(const CellList<Real>& list, const Padded<Real>* u, double* stored) {
+  alignas(64) Corners<Real> at;
+  for (long b = 0; b < list.blocks; ++b) {
+    const int* places = list.corners + 8 * cells<Real> * b;
+    for (int n = 0; n < 8; ++n) gather<3>(u, places + n * cells<Real>, at[n]);
+    for (int lane = 0; lane < cells<Real>; lane += lanes<Real>) add_branch_energies<Real>(list, b, lane, at, stored);
+  }
+}
+
 }  // namespace
 
 template <class Real>
 CellListKernels<Real> cell_list_kernels() {
   return {.cells = cells<Real>,
+          .lanes = lanes<Real>,
           .forces = forces<Real>,
           .viscous_forces = forces_of_curve<true, false, Real>,
-          .relaxing_forces = relaxing_forces<Real>};
+          .relaxing_forces = relaxing_forces<Real>,
+          .branch_energies = branch_energies<Real>};
 }
 
 template CellListKernels<double> cell_list_kernels();

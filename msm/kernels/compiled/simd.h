@@ -34,6 +34,12 @@ namespace stdx = std::experimental;
 template <class Real>
 using Lanes = stdx::native_simd<Real>;  ///< 2, 4, 8 doubles; 4, 8, 16 floats
 
+/// Fetches what will be changed soon; any place.
+template <class Real>
+inline void prefetch(const Real* p) {
+  __builtin_prefetch(p, 1);
+}
+
 template <class Real>
 inline Lanes<Real> load(const Real* p) {
   return Lanes<Real>(p, stdx::element_aligned);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <iterator>
 
@@ -56,6 +57,29 @@ class FailingProgram {
   TemporaryFolder folder_;
   std::filesystem::path script_ = folder_.path / "springproof-fem";
 };
+
+TEST(RelaxingFrequencies, AreThoseOfTheComplexModulus) {
+  PreparedCase prepared = relaxing_bar();
+  prepared.experiment.reference.elements.clear();
+  const auto modes_of = [&](const Relaxation& relaxation, double modulus) {
+    prepared.experiment.relaxation = relaxation;
+    IsotropicMaterial material = prepared.experiment.materials[0];
+    material.youngs_modulus *= modulus;
+    material.poisson_ratio = 0;  // where all moduli of a bending mode are in proportion to G, but for the bulk modulus'
+    return natural_frequencies(prepared, material, {.modes = 2, .consistency = {0}}).front().models.front().modes;
+  };
+  const Relaxation one{{{0.2, 0.5}}};
+  const ModeSet relaxing = modes_of(one, 1), elastic = modes_of({}, 1);
+  EXPECT_TRUE(elastic.damping.empty());
+  ASSERT_GE(relaxing.damping.size(), 2u);
+  const double f = relaxing.frequencies[0], w = 2 * 3.14159265358979 * f,
+               stiffer = std::pow(f / elastic.frequencies[0], 2);
+  // E' / E = 1 + c (storage - 1), E'' / E = c loss: the same c.
+  const double c = (stiffer - 1) / (one.storage(w) - 1);
+  EXPECT_GT(c, 0.6);
+  EXPECT_LT(c, 1);
+  EXPECT_NEAR(relaxing.damping[0], c * one.loss(w) / (2 * stiffer), 1e-9);
+}
 
 TEST(RelaxingFrequencies, WithoutTheModesOfASuddenStrainThereIsNoReference) {
   if (!fem::available()) GTEST_SKIP() << "no springproof-fem";

@@ -295,6 +295,23 @@ TEST(MotionRun, EnergyErrorIsOfSecondOrderInTheStepAndDoesNotGrow) {
   EXPECT_LT(energy_error("0.004", 2, 4), 1.2 * early);
 }
 
+TEST(MotionRun, WhatBranchesStoreAndDissipateIsRecordedAndAddsUp) {
+  for (const auto& [integrator, allowed] : {std::pair("energy_momentum", 1e-10), {"explicit", 2e-3}}) {
+    const Part part = run_of(pulled_cube(
+        "\"hybmss_avg\"",
+        std::string("duration_s = 4\nequilibrium = false\nsamples = 400\ntime_step_s = 0.008\nintegrator = \"") +
+            integrator +
+            "\"\n[material.relaxation]\nbranches = [{ share = 0.4, time_s = "
+            "0.2 }, { share = 0.1, time_s = 1 }]\n"));
+    const HistoryRecord& h = history(part);
+    const std::vector<double>& dissipated = values_of(h, "dissipated_energy");
+    EXPECT_TRUE(std::is_sorted(dissipated.begin(), dissipated.end())) << integrator;
+    EXPECT_GT(dissipated.back(), 0.01 * values_of(h, "elastic_energy").back()) << integrator;
+    EXPECT_GT(values_of(h, "branch_energy").back(), 0) << integrator;
+    EXPECT_LT(h.measured.at("energy_drift"), allowed) << integrator;
+  }
+}
+
 TEST(MotionRun, LargerStepIsRefusedWithItsBoundBeforeAnythingIsRun) {
   const Experiment e = pulled_cube("\"hybmss\"", "duration_s = 2\ntime_step_s = 0.5\n");
   try {

@@ -66,6 +66,39 @@ TEST_F(FiguresInBrowser, EveryFigureIsDrawn) {
   EXPECT_NE(dom.find("<b>1.5000</b>"), std::string::npos) << "total of the finer cells in percent, in the table";
 }
 
+TEST_F(FiguresInBrowser, HistoriesAreDrawnBesideWhatWasMeasured) {
+  CaseResult c = embedded_case();
+  for (const double time : {0.5, 2.0}) {
+    ValidatedValue v = of_run<ValidatedValue>({"hybmss", 0.4, {2, 2, 2}});
+    v.name = "creep, " + std::to_string(time) + " s";
+    v.quantity = "mean_displacement.z_max.z";
+    v.unit = "m";
+    v.measured = 0.001 * time;
+    v.u_measured = 1e-4;
+    v.simulated = 0.0011 * time;
+    v.history = "creep";
+    v.time = time;
+    c.validation.push_back(v);
+  }
+  const std::string dom = ReportInBrowser::open_with({c}, pictures({c}), tools + R"js(
+    const canvases = () => [...document.querySelectorAll('#measured canvas')];
+    until(() => canvases().length === 2 && drawn(canvases()[1]), () => {
+      say('history ' + (drawn(canvases()[1]) ? 'drawn' : 'blank'));
+      const [drawing] = historyDrawings(cases[0]), sets = drawing.make().data.datasets;
+      say(drawing.name + ': ' + sets.map(set => set.data.map(p => p.x + ' s ' + p.y.toFixed(2)).join(', ')).join(' | '));
+      endLoading();
+    });
+  )js",
+                                                     "", whole_page);
+  expect_no_complaint(dom);
+  EXPECT_NE(dom.find("history drawn<"), std::string::npos) << said(dom);
+  EXPECT_NE(
+      dom.find("measured-history-1: 0.5 s 0.50, 2 s 2.00 | 0.5 s 0.55, 2 s 2.20 | 0.5 s 0.70, 2 s 2.20 | 0.5 s 0.30, "
+               "2 s 1.80<"),
+      std::string::npos)
+      << said(dom);
+}
+
 TEST_F(FiguresInBrowser, FirstScreenShowsTwoBodiesAndADotPerModelAndCase) {
   const std::string dom = open_with(tools + R"js(
     const canvas = () => document.querySelector('#first-bodies canvas');

@@ -191,6 +191,30 @@ TEST(RelaxingCells, KernelsMoveThemAsPlainLoopsDo) {
     }
 }
 
+TEST(RelaxingCells, KernelsKnowWhatTheyHaveStoredAndDissipated) {
+  for (const MassSpringModel& model :
+       {bar("hybmss_avg", {9, 3, 2}).model, bar("hybmss_avg", {4, 2, 2}).model, cut_model()}) {
+    MotionOptions options{.branch_energies = true};
+    options.relaxation = RelaxingCells::of(model, rubber, two);
+    options.time_step = 0.5 * relaxing_time_step(model, density, options.relaxation, safe_time_step(model, density));
+    PlainMotion plain(model, density, options);
+    const std::unique_ptr<Motion> by_kernel = list_motion(model, density, options);
+    ASSERT_TRUE(by_kernel);
+    for (Motion* motion : {static_cast<Motion*>(&plain), by_kernel.get()}) {
+      after(*motion, model, 1);
+      for (int step = 0; step < 150; ++step) motion->advance(1);
+    }
+    const BranchEnergies exact = *plain.branch_energies(), energies = *by_kernel->branch_energies();
+    EXPECT_GT(exact.stored, 0);
+    EXPECT_NEAR(energies.stored, exact.stored, 1e-10 * exact.stored);
+    EXPECT_NEAR(energies.dissipated, exact.dissipated, 1e-2 * exact.dissipated);
+    by_kernel->relax();
+    EXPECT_EQ(by_kernel->branch_energies()->dissipated, 0);
+    options.branch_energies = false;
+    EXPECT_FALSE(list_motion(model, density, options)->branch_energies());
+  }
+}
+
 TEST(RelaxingCells, OfBoxesByThreadsAndInFloatsMoveAsPlainLoopsDo) {
   for (const MassSpringModel& model :
        {bar("hybmss_avg", {9, 3, 2}).model, bar("hybmss_avg", {8, 4, 4}).model, cut_model()}) {

@@ -118,6 +118,21 @@ TEST_F(HistoryFile, MayBeMeasuredFromItsLastSample) {
   EXPECT_EQ(e.load_cases.at(e.measured[0].minus.value()).name, "bare after 4 s");
 }
 
+TEST_F(HistoryFile, HasANameOfItsOwn) {
+  written(three);
+  const std::string again =
+      "}, { quantity = \"mean_displacement.x_max.x\", file = \"creep.csv\", load_case = \"bare\", name = ";
+  EXPECT_EQ(bar(again + "\"other\"").measured.size(), 6u);
+  try {
+    bar(again + "\"creep\"");
+    FAIL() << "accepted";
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("'creep' is the name of a history (allowed: a name of its own)"),
+              std::string::npos)
+        << e.what();
+  }
+}
+
 TEST_F(HistoryFile, NeedsAMaterialThatRelaxesAndAFile) {
   written(three);
   EXPECT_THROW(bar("", ""), InputError);
