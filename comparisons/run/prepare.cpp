@@ -1,6 +1,7 @@
 #include "comparisons/run/prepare.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -22,6 +23,7 @@
 #include "meshes/patches/select_patches.h"
 #include "meshes/regions/mark_regions.h"
 #include "meshes/volume.h"
+#include "msm/exchange/springs_file.h"
 #include "msm/models.h"
 #include "msm/statics/equilibrium.h"
 #include "problem/case_file/external.h"
@@ -133,7 +135,33 @@ void choose_curve(const Experiment& e, ModelParameters& p) {
     if (e.kinematics == name_of(curve)) p.curve = curve;
 }
 
-/// @throws InputError at a springs file that stands for another material than the case's.
+/// "core (E = 10000 Pa, nu = 0.3, 1000 kg/m^3)", one after the other.
+std::string words_of(const std::vector<SpringsRegion>& regions) {
+  std::vector<std::string> words;
+  for (const auto& [name, m] : regions)
+    words.push_back(
+        fmt::format("{} (E = {:g} Pa, nu = {:g}, {:g} kg/m^3)", name, m.youngs_modulus, m.poisson_ratio, m.density));
+  return words.empty() ? "none" : fmt::format("{}", fmt::join(words, ", "));
+}
+
+/// @throws InputError at a springs file whose regions are not the case's.
+void require_regions(const ModelParameters& p, const Experiment& e) {
+  if (!p.springs) return;
+  std::vector<SpringsRegion> wanted;
+  for (const MaterialRegion& r : e.regions) wanted.push_back({r.name, r.material});
+  const auto equal = [](double a, double b) { return std::abs(a - b) <= 1e-9 * std::abs(b); };
+  const bool same = std::ranges::equal(p.springs->regions, wanted, [&](const auto& a, const auto& b) {
+    return a.name == b.name && equal(a.material.youngs_modulus, b.material.youngs_modulus) &&
+           same_poisson_ratio(a.material.poisson_ratio, b.material.poisson_ratio) &&
+           equal(a.material.density, b.material.density);
+  });
+  if (!same || e.listed.materials.size() > 1)
+    throw InputError(fmt::format("{}: /regions: {} (allowed: the [[region]]s of the case, {}{})", p.row.name,
+                                 words_of(p.springs->regions), words_of(wanted),
+                                 e.listed.materials.size() > 1 ? ", of one material each" : ""));
+}
+
+/// @throws InputError at a springs file that stands for other materials than the case's.
 void check_own_models(const PreparedCase& prepared) {
   const Experiment& e = prepared.experiment;
   for (std::size_t m = 0; m < prepared.models.size(); ++m)
@@ -144,6 +172,7 @@ void check_own_models(const PreparedCase& prepared) {
   for (std::size_t m = 0; m < prepared.models.size(); ++m)
     for (const IsotropicMaterial& material : e.materials) try {
         require_material(prepared.models[m], material);
+        require_regions(prepared.models[m], e);
       } catch (const InputError& error) {
         throw InputError(e.models[m].where, fmt::format("compare.models: {}", error.what()));
       }
@@ -160,8 +189,11 @@ void try_model(const PreparedCase& prepared, const Lattice& lattice, std::size_t
   const Mesh& mesh = *lattice.mesh;
   const auto [model, embedding] = build_chosen(prepared, lattice, number, experiment.materials.front());
   if (experiment.models[number].in_motion)
-    for (const IsotropicMaterial& material : experiment.materials)  // refuses unsafe ones
-      steps_of(experiment, build_chosen(prepared, lattice, number, material).model, material);
+    for (std::size_t s = 0; s < experiment.settings().size(); ++s) {  // refuses unsafe ones
+      const PreparedCase at = at_setting(prepared, s);
+      const IsotropicMaterial& material = at.experiment.body_material(s);
+      steps_of(at.experiment, build_chosen(at, lattice, number, material).model, material);
+    }
   if (parameters.row.topology == Topology::cells && !*parameters.cut) return;
   const BoundaryConditions bc =
       transfer(prepared.loads, mesh, embedding, model.network, 1000, experiment.model_kinematics());
@@ -261,11 +293,17 @@ void check_region_models(const PreparedCase& prepared) {
                                             [](const auto& m) { return m == "region" || m == "interface"; });
   for (std::size_t m = 0; m < prepared.models.size(); ++m) {
     const ModelParameters& p = prepared.models[m];
-    const bool can = *p.cut && !p.springs && p.has(Extension::averaging) && e.body.accuracies.empty();
+    const bool of_file = p.springs && !p.springs->regions.empty();  // whose regions are the case's: check_own_models
+    const bool can = of_file || (*p.cut && p.has(Extension::averaging) && e.body.accuracies.empty());
     if (*p.coarsened && measures_regions)
       throw InputError(e.models[m].where,
                        fmt::format("compare.models: {}: coarsened = true: a measured cell is of no region (allowed: "
                                    "without the measures region and interface)",
+                                   e.models[m].label));
+    if (*p.coarsened && e.listed.region > 0)
+      throw InputError(e.models[m].where,
+                       fmt::format("compare.models: {}: coarsened = true: cells are measured for one material of each "
+                                   "region (allowed: a list in [material])",
                                    e.models[m].label));
     if (*p.coarsened && e.model_kinematics() == Kinematics::finite)  // at rest or in motion
       throw InputError(
@@ -277,7 +315,7 @@ void check_region_models(const PreparedCase& prepared) {
     throw InputError(
         e.models[m].where,
         fmt::format("compare.models: {} is of one material in a body (allowed beside [[region]]: hybmss_avg in "
-                    "cut cells of one size; or models = [])",
+                    "cut cells of one size, or a springs file of such; or models = [])",
                     e.models[m].label));
   }
 }
@@ -332,6 +370,16 @@ void note_heavy_masses(PreparedCase& prepared) {
                                                 mass.name, mass.mass / body, body));
 }
 
+/// Where a message about a physical volume belongs, which the mesher has without the lines of the case.
+std::optional<SourceLocation> region_of_message(const Experiment& e, const std::string& message) {
+  if (message.find("physical volume") == std::string::npos) return {};
+  for (const MaterialRegion& r : e.regions)
+    if (const auto* volume = std::get_if<std::string>(&r.place);
+        volume && message.find("'" + *volume + "'") != std::string::npos)
+      return r.where;
+  return {};
+}
+
 /// Calls `prepare_it`; error messages name the case.
 template <class Prepare>
 PreparedCase naming(const Experiment& experiment, const Prepare& prepare_it) try {
@@ -340,6 +388,8 @@ PreparedCase naming(const Experiment& experiment, const Prepare& prepare_it) try
   throw;
 } catch (const InputError& e) {
   const std::string message = e.what(), file = experiment.file.string();
+  if (const auto where = region_of_message(experiment, message); where && !message.starts_with(file))
+    throw InputError(*where, "region.volume: " + message);
   throw InputError(message.starts_with(file) ? message : file + ": " + message);
 } catch (const std::runtime_error& e) {
   const std::string message = e.what(), file = experiment.file.string();
