@@ -357,7 +357,8 @@ void soften_bonds(MassSpringModel& model, double density) {
 double viscous_time_step(const MassSpringModel& model, double density, const Viscosity& viscosity, double elastic,
                          double theta) {
   if (!viscosity.acts()) return elastic;
-  const MassSpringModel dashpots{model.network, {viscosity.cells()}};
+  const ForceLaw cells = viscosity.of_measured() ? ForceLaw(viscosity.measured()) : viscosity.cells();
+  const MassSpringModel dashpots{model.network, {cells}};
   const double of_dashpots = viscosity.along_springs() ? elastic : safe_time_step(dashpots, density, false, theta);
   const double frequency = 2 / elastic, rate = viscosity.time() * 4 / (of_dashpots * of_dashpots);
   return 4 / (std::sqrt(rate * rate + 4 * frequency * frequency) + rate);

@@ -38,6 +38,7 @@ CellForces<Real>::CellForces(const MassSpringModel& model, InstructionSet set, c
   for (int m = 0; m < static_cast<int>(materials); ++m)
     constants_.push_back({averaged ? averaged_constants<Real>(averaged->in(m), 1) : LatticeAveraged<Real>{},
                           averaged_constants<Real>(viscous_ ? dashpots.in(m) : dashpots, time)});
+  list_.retardation = static_cast<Real>(time);
   list_.boxes = model.network.cells.kind() == CellKind::boxes;
   for (int i = 0; i < 3; ++i) {
     list_.proportions[i] = static_cast<Real>(model.network.cells.proportions[i]);

@@ -14,7 +14,8 @@ namespace springproof {
 template <class Real>
 class CellForces : public BlockForces<Real> {
  public:
-  /// @param dashpots stiffness at rest of what AveragedSprings::add_viscous_forces() adds, where `time` > 0
+  /// @param dashpots stiffness at rest of what AveragedSprings::add_viscous_forces() adds, where `time` > 0; measured
+  /// cells have MeasuredCells::add_viscous_forces()
   /// @param time of retardation [s]
   /// @throws std::invalid_argument without Capability::cell_kernels.
   explicit CellForces(const MassSpringModel& model, InstructionSet set = instruction_set(),

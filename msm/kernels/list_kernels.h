@@ -127,6 +127,7 @@ struct CellList {
   const Real* forms = nullptr;    ///< of measured cells: per block each number of MeasuredCells::form in turn [N/m]
   LatticeAveraged<Real> springs = {};   ///< moduli, hourglass stiffness times G / 8 [Pa]; of measured cells no curve
   LatticeAveraged<Real> dashpots = {};  ///< the same times the time of retardation [s]; without a curve
+  Real retardation = 0;                 ///< this time, for the forms
   LatticeAveraged<Real> relaxing = {};  ///< long-time moduli of the branches; without a curve
   int branch_count = 0;
   const CellBranch<Real>* branches = nullptr;

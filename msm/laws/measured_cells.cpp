@@ -225,6 +225,18 @@ void MeasuredCells::add_forces(const Network& network, const NodalVectors& x, No
   }
 }
 
+void MeasuredCells::add_viscous_forces(const Network& network, const NodalVectors& x, const NodalVectors& v,
+                                       double time, NodalVectors& f) const {
+  for (std::size_t c = 0; c < network.cells.size(); ++c) {
+    const Hexahedron& corners = network.cells.corners[c];
+    const Stretched cell(network.cells.shape(c), corners_at(corners, x));
+    const Corners rate = corners_at(corners, v);
+    const Numbers y_rate = cell.slope() * Eigen::Map<const Eigen::Matrix<double, 24, 1>>(rate.data());
+    const Corners force = cell.force(time * (form_of_cell(c) * y_rate));
+    for (int n = 0; n < 8; ++n) f.row(corners[n]) -= force.col(n).transpose();
+  }
+}
+
 void MeasuredCells::add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const {
   for (std::size_t c = 0; c < network.cells.size(); ++c) {
     const Hexahedron& corners = network.cells.corners[c];

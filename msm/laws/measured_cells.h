@@ -53,6 +53,12 @@ struct MeasuredCells {
   void add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const;  ///< f += -dE/dx [N]
   void add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const;  ///< K += d2E/dx2 [N/m]
 
+  /// f += the forces [N] of dashpots of the same forms: `time` [s] times M y' resists the rate of y, so that the matrix
+  /// at rest is `time` times the stiffness.  No rigid motion is resisted, and both momenta are kept.  v: velocities
+  /// [m/s], n x 3.
+  void add_viscous_forces(const Network& network, const NodalVectors& x, const NodalVectors& v, double time,
+                          NodalVectors& f) const;
+
   /// M of a cell [N/m].
   DeformationForm form_of_cell(std::size_t cell) const;
   /// The next cell's.

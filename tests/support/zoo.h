@@ -113,6 +113,19 @@ inline Network bent_triangles(double edge = 0.5) {
   return network;
 }
 
+/// A model of averaged springs with a form of its own in every cell, in which everything is coupled.
+inline MassSpringModel with_measured_cells(MassSpringModel model) {
+  MeasuredCells measured;
+  for (std::size_t c = 0; c < model.network.cells.size(); ++c) {
+    const DeformationForm averaged = form_of(*averaged_springs_of(model), model.network.cells.shape(c));
+    const NodalVectors r = noise(6, 1, static_cast<unsigned>(c));
+    const Eigen::Map<const Eigen::Matrix<double, deformations_of_cell, 1>> coupled(r.data());
+    measured.add_form(averaged + averaged.trace() / 100 * coupled * coupled.transpose());
+  }
+  model.laws[0] = measured;
+  return model;
+}
+
 inline Eigen::Matrix3d rotation() { return Eigen::AngleAxisd(0.7, Vec3(1, 2, -1).normalized()).toRotationMatrix(); }
 
 }  // namespace springproof::test

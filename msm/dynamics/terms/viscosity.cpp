@@ -22,14 +22,20 @@ Viscosity Viscosity::of(const MassSpringModel& model, const IsotropicMaterial& m
     throw InputError("viscosity does not suit this model: " + why);
   viscosity.time_ = time;
   viscosity.along_springs_ = consists_of<Springs>(model);
-  if (!model.network.cells.empty()) viscosity.cells_ = averaged_beside(model, material);
+  if (const MeasuredCells* own = law_of<MeasuredCells>(model))
+    viscosity.measured_ = *own;
+  else if (!model.network.cells.empty())
+    viscosity.cells_ = averaged_beside(model, material);
   return viscosity;
 }
 
 void Viscosity::add_forces(const Network& network, const NodalVectors& x, const NodalVectors& v,
                            NodalVectors& f) const {
   if (!along_springs_) {
-    cells_.add_viscous_forces(network, x, v, time_, f);
+    if (of_measured())
+      measured_.add_viscous_forces(network, x, v, time_, f);
+    else
+      cells_.add_viscous_forces(network, x, v, time_, f);
     return hand_back(network.cells.carried, f);
   }
   for (const Spring& s : network.springs) {

@@ -18,6 +18,7 @@ AveragedSprings averaged_beside(const MassSpringModel& model, const IsotropicMat
 /// circular frequency w loses the share w time / 2 of critical damping, a rigid motion nothing; both momenta are kept
 /// at any deformation.
 ///  - Models of springs alone: a dashpot time * k along each spring.
+///  - Measured cells: by their own forms, MeasuredCells::add_viscous_forces().
 ///  - Others, of cells: AveragedSprings::add_viscous_forces(), with lambda for every nu; below 1/4 dashpots along the
 ///    springs would resist changes of volume too much.
 class Viscosity {
@@ -25,15 +26,17 @@ class Viscosity {
   /// None.
   Viscosity() = default;
 
-  /// That of a model: along its springs, of its own averaged springs, or of those exact for the material.
+  /// That of a model: along its springs, of its own cells, or of averaged springs exact for the material.
   /// @param time of retardation [s]; 0: none, for any model
   /// @throws InputError for a model that lacks Capability::viscosity, and for time < 0.
   static Viscosity of(const MassSpringModel& model, const IsotropicMaterial& material, double time);
 
   bool acts() const { return time_ > 0; }
-  double time() const { return time_; }                    ///< of retardation [s]
-  bool along_springs() const { return along_springs_; }    ///< dashpots are along springs, not of cells
-  const AveragedSprings& cells() const { return cells_; }  ///< their stiffness at rest, times time(): the dashpots
+  double time() const { return time_; }                        ///< of retardation [s]
+  bool along_springs() const { return along_springs_; }        ///< dashpots are along springs, not of cells
+  const AveragedSprings& cells() const { return cells_; }      ///< their stiffness at rest, times time(): the dashpots
+  const MeasuredCells& measured() const { return measured_; }  ///< in their place, of a model of such cells
+  bool of_measured() const { return !measured_.form.empty(); }
 
   /// f += viscous forces [N] at positions x [m] and velocities v [m/s], n x 3.
   void add_forces(const Network& network, const NodalVectors& x, const NodalVectors& v, NodalVectors& f) const;
@@ -42,6 +45,7 @@ class Viscosity {
   double time_ = 0;
   bool along_springs_ = false;
   AveragedSprings cells_;
+  MeasuredCells measured_;
 };
 
 }  // namespace springproof

@@ -148,13 +148,22 @@ SPRINGPROOF_INLINE void add_hourglass_forces(const LatticeAveraged<Real>& law, c
   }
 }
 
-/// P += G F 2E' + lambda tr(F' F^-1) F^-T and v = F'^T S + F^T S': viscous stress and rates of the hourglass
-/// components (AveragedSprings::add_viscous_forces()).
+/// The rate of v = F^T S, of those of F and S.
+template <class Real>
+SPRINGPROOF_INLINE void turned_back_rates(const Lanes<Real> (&F)[3][3], const Lanes<Real> (&S)[3][4],
+                                          const Lanes<Real> (&rate)[3][3], const Lanes<Real> (&S_rate)[3][4],
+                                          Lanes<Real> (&v)[4][3]) {
+  for (int m = 0; m < 4; ++m)
+    for (int j = 0; j < 3; ++j)
+      v[m][j] = (rate[0][j] * S[0][m] + rate[1][j] * S[1][m] + rate[2][j] * S[2][m]) +
+                (F[0][j] * S_rate[0][m] + F[1][j] * S_rate[1][m] + F[2][j] * S_rate[2][m]);
+}
+
+/// P += G F 2E' + lambda tr(F' F^-1) F^-T: the viscous stress (AveragedSprings::add_viscous_forces()).
 template <class Real, class Modulus>
 SPRINGPROOF_INLINE void add_viscous_stress(const LatticeAveraged<Modulus>& dashpots, const Lanes<Real> (&F)[3][3],
-                                           const Lanes<Real> (&inverse_transposed)[3][3], const Lanes<Real> (&S)[3][4],
-                                           const Lanes<Real> (&rate)[3][3], const Lanes<Real> (&S_rate)[3][4],
-                                           Lanes<Real> (&P)[3][3], Lanes<Real> (&v)[4][3]) {
+                                           const Lanes<Real> (&inverse_transposed)[3][3],
+                                           const Lanes<Real> (&rate)[3][3], Lanes<Real> (&P)[3][3]) {
   using V = Lanes<Real>;
   V twice[3][3];
   for (int j = 0; j < 3; ++j)
@@ -169,10 +178,6 @@ SPRINGPROOF_INLINE void add_viscous_stress(const LatticeAveraged<Modulus>& dashp
     for (int j = 0; j < 3; ++j)
       P[i][j] += dashpots.shear * (F[i][0] * twice[0][j] + F[i][1] * twice[1][j] + F[i][2] * twice[2][j]) +
                  volume * inverse_transposed[i][j];
-  for (int m = 0; m < 4; ++m)
-    for (int j = 0; j < 3; ++j)
-      v[m][j] = (rate[0][j] * S[0][m] + rate[1][j] * S[1][m] + rate[2][j] * S[2][m]) +
-                (F[0][j] * S_rate[0][m] + F[1][j] * S_rate[1][m] + F[2][j] * S_rate[2][m]);
 }
 
 }  // namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE

@@ -158,30 +158,87 @@ SPRINGPROOF_INLINE void times_form(const Real* form, const Lanes<Real> (&y)[18],
   }
 }
 
-/// P = dW/dF over the edge, and w of the patterns over their norm, of MeasuredCells; v = F^T S.
+/// How the cells of a vector are stretched: F^T F = 1 + sum E_k q_k q_k^T.
 template <class Real>
-SPRINGPROOF_INLINE void measured_stress(const Real* form, const Cells<Real>& cell, const Lanes<Real> (&D)[3][3],
-                                        const Lanes<Real> (&F)[3][3], const Lanes<Real>& dilatation,
-                                        const Lanes<Real> (&v)[4][3], Lanes<Real> (&P)[3][3], Lanes<Real> (&w)[4][3]) {
-  using V = Lanes<Real>;
-  const V edge = Real(1) / cell.per_edge;
-  V E[3][3], Q[3][3], half_log[3], y[18], s[18];
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-      E[i][j] = D[i][j] + D[j][i] + (D[0][i] * D[0][j] + D[1][i] * D[1][j] + D[2][i] * D[2][j]);
-  stdx::where(dilatation + Real(1) < Real(1e-30), E[0][0]) = Real(__builtin_nan(""));
-  find_eigenvectors<Real>(E, Q);
-  for (int k = 0; k < 3; ++k) half_log[k] = Real(0.5) * logarithm_of_1_and<Real>(E[k][k]);
+struct Principal {
+  Lanes<Real> E[3][3];      ///< the E_k on its diagonal
+  Lanes<Real> Q[3][3];      ///< q_k in its columns
+  Lanes<Real> slope[3][3];  ///< twice the divided differences of the half logarithm at 1 + E_k
+
+  SPRINGPROOF_INLINE Principal(const Lanes<Real> (&D)[3][3], const Lanes<Real>& dilatation) {
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        E[i][j] = D[i][j] + D[j][i] + (D[0][i] * D[0][j] + D[1][i] * D[1][j] + D[2][i] * D[2][j]);
+    stdx::where(dilatation + Real(1) < Real(1e-30), E[0][0]) = Real(__builtin_nan(""));
+    find_eigenvectors<Real>(E, Q);
+    for (int p = 0; p < 3; ++p)
+      for (int q = p; q < 3; ++q) {
+        const Lanes<Real> above = E[q][q] + Real(1), t = (E[p][p] - E[q][q]) / above;
+        slope[p][q] = slope[q][p] = (p == q ? Lanes<Real>(1) : logarithm_over<Real>(t)) / above;
+      }
+  }
+};
+
+/// Of the patterns in y, over their norm.
+template <class Real>
+constexpr Real norm_of_pattern(int m) {
+  return m < 3 ? Real(0.5) : Real(1);
+}
+
+/// y of MeasuredCells; v = F^T S.
+template <class Real>
+SPRINGPROOF_INLINE void deformations(const Principal<Real>& at, const Lanes<Real>& edge, const Lanes<Real> (&v)[4][3],
+                                     Lanes<Real> (&y)[18]) {
+  Lanes<Real> half_log[3];
+  for (int k = 0; k < 3; ++k) half_log[k] = Real(0.5) * logarithm_of_1_and<Real>(at.E[k][k]);
   for (int e = 0; e < 6; ++e) {
-    const V *a = Q[strain_of[e][0]], *b = Q[strain_of[e][1]];
+    const Lanes<Real>*a = at.Q[strain_of[e][0]], *b = at.Q[strain_of[e][1]];
     y[e] = (a[0] * b[0] * half_log[0] + a[1] * b[1] * half_log[1] + a[2] * b[2] * half_log[2]) * edge;
     if (e > 2) y[e] += y[e];
   }
   for (int m = 0; m < 4; ++m)
-    for (int j = 0; j < 3; ++j) y[6 + 3 * m + j] = (m < 3 ? Real(0.5) : Real(1)) * edge * v[m][j];
-  times_form<Real>(form, y, s);
+    for (int j = 0; j < 3; ++j) y[6 + 3 * m + j] = norm_of_pattern<Real>(m) * edge * v[m][j];
+}
+
+/// M = A Q.
+template <class Real>
+SPRINGPROOF_INLINE void product(const Lanes<Real> (&A)[3][3], const Lanes<Real> (&Q)[3][3], Lanes<Real> (&M)[3][3]) {
+  for (int i = 0; i < 3; ++i)
+    for (int p = 0; p < 3; ++p) M[i][p] = A[i][0] * Q[0][p] + A[i][1] * Q[1][p] + A[i][2] * Q[2][p];
+}
+
+/// y += times y' over the edge, of rates F' and v' = F'^T S + F^T S'.
+template <class Real>
+SPRINGPROOF_INLINE void add_rates(const Principal<Real>& at, const Lanes<Real>& times, const Lanes<Real> (&F)[3][3],
+                                  const Lanes<Real> (&F_rate)[3][3], const Lanes<Real> (&v_rate)[4][3],
+                                  Lanes<Real> (&y)[18]) {
+  using V = Lanes<Real>;
+  V FQ[3][3], GQ[3][3], T[3][3];
+  product<Real>(F, at.Q, FQ);
+  product<Real>(F_rate, at.Q, GQ);
+  for (int p = 0; p < 3; ++p)  // the rate of log U in axes of the eigenvectors
+    for (int q = p; q < 3; ++q)
+      T[p][q] = T[q][p] = Real(0.5) * at.slope[p][q] *
+                          ((FQ[0][p] * GQ[0][q] + FQ[1][p] * GQ[1][q] + FQ[2][p] * GQ[2][q]) +
+                           (GQ[0][p] * FQ[0][q] + GQ[1][p] * FQ[1][q] + GQ[2][p] * FQ[2][q]));
+  for (int e = 0; e < 6; ++e) {
+    const V *a = at.Q[strain_of[e][0]], *b = at.Q[strain_of[e][1]];
+    V rate = 0;
+    for (int p = 0; p < 3; ++p) rate += a[p] * (T[p][0] * b[0] + T[p][1] * b[1] + T[p][2] * b[2]);
+    y[e] += (e < 3 ? times : times + times) * rate;
+  }
   for (int m = 0; m < 4; ++m)
-    for (int j = 0; j < 3; ++j) w[m][j] = (m < 3 ? Real(0.5) : Real(1)) * s[6 + 3 * m + j];
+    for (int j = 0; j < 3; ++j) y[6 + 3 * m + j] += norm_of_pattern<Real>(m) * times * v_rate[m][j];
+}
+
+/// P = dW/dF over the edge, and w of the patterns over their norm, of s = dW/dy.
+template <class Real>
+SPRINGPROOF_INLINE void measured_stress(const Principal<Real>& at, const Lanes<Real> (&F)[3][3],
+                                        const Lanes<Real> (&s)[18], Lanes<Real> (&P)[3][3], Lanes<Real> (&w)[4][3]) {
+  using V = Lanes<Real>;
+  for (int m = 0; m < 4; ++m)
+    for (int j = 0; j < 3; ++j) w[m][j] = norm_of_pattern<Real>(m) * s[6 + 3 * m + j];
+  const V(&Q)[3][3] = at.Q;
   V T[3][3], FQ[3][3];
   for (int p = 0; p < 3; ++p)
     for (int q = p; q < 3; ++q) {  // in axes of the eigenvectors, times the divided difference of the half logarithm
@@ -190,11 +247,9 @@ SPRINGPROOF_INLINE void measured_stress(const Real* form, const Cells<Real>& cel
         const int i = strain_of[e][0], j = strain_of[e][1];
         along += s[e] * (e < 3 ? Q[i][p] * Q[i][q] : Q[i][p] * Q[j][q] + Q[j][p] * Q[i][q]);
       }
-      const V above = E[q][q] + Real(1), t = (E[p][p] - E[q][q]) / above;
-      T[p][q] = T[q][p] = along * (p == q ? V(1) : logarithm_over<Real>(t)) / above;  // twice it
+      T[p][q] = T[q][p] = along * at.slope[p][q];  // twice it
     }
-  for (int i = 0; i < 3; ++i)
-    for (int p = 0; p < 3; ++p) FQ[i][p] = F[i][0] * Q[0][p] + F[i][1] * Q[1][p] + F[i][2] * Q[2][p];
+  product<Real>(F, Q, FQ);
   for (int i = 0; i < 3; ++i) {
     V of_row[3];
     for (int q = 0; q < 3; ++q) of_row[q] = FQ[i][0] * T[0][q] + FQ[i][1] * T[1][q] + FQ[i][2] * T[2][q];
@@ -264,20 +319,33 @@ SPRINGPROOF_INLINE void forces_of_cells(const CellList<Real>& list, long block, 
   V Z[overstrain_count];
   if constexpr (relaxing)
     relax(list, list.overstrains + overstrain_count * cells<Real> * list.branch_count * block + at, D, v, Z);
-  if constexpr (curve == LatticeCurve::none) {
-    measured_stress<Real>(list.forms + cell_number::of_form * cells<Real> * block + at, c, D, F, dilatation, v, P, w);
+  constexpr bool measured = curve == LatticeCurve::none;
+  V rate[3][3], S_rate[3][4];
+  if constexpr (viscous) {
+    patterns_of_cells<Real>(rates, at, c, rate, S_rate);
+    if (list.boxes) stretch(list, rate, S_rate);
+  }
+  if constexpr (measured) {
+    const Principal<Real> principal(D, dilatation);
+    const V edge = Real(1) / c.per_edge;
+    V y[18], s[18];
+    deformations<Real>(principal, edge, v, y);
+    if constexpr (viscous) {
+      turned_back_rates<Real>(F, S, rate, S_rate, v);
+      add_rates<Real>(principal, list.retardation * edge, F, rate, v, y);
+    }
+    times_form<Real>(list.forms + cell_number::of_form * cells<Real> * block + at, y, s);
+    measured_stress<Real>(principal, F, s, P, w);
   } else {
     const LatticeAveraged<V> springs = times_area(list.springs, c.area);
     add_hourglass_forces(springs, c, v, w);
     first_stress<curve>(springs, D, inverse_transposed, dilatation, P);
   }
   if constexpr (relaxing) add_relaxing_stress<Real>(times_area(list.relaxing, c.area), c, F, Z, P, w);
-  if constexpr (viscous) {
+  if constexpr (viscous && !measured) {
     const LatticeAveraged<V> dashpots = times_area(list.dashpots, c.area);
-    V rate[3][3], S_rate[3][4];
-    patterns_of_cells<Real>(rates, at, c, rate, S_rate);
-    if (list.boxes) stretch(list, rate, S_rate);
-    add_viscous_stress(dashpots, F, inverse_transposed, S, rate, S_rate, P, v);
+    add_viscous_stress(dashpots, F, inverse_transposed, rate, P);
+    turned_back_rates<Real>(F, S, rate, S_rate, v);
     add_hourglass_forces(dashpots, c, v, w);
   }
   constexpr Real quarter = 0.25;

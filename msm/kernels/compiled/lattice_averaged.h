@@ -66,7 +66,8 @@ void averaged_of_cells(const Row<Real> (&r)[4], const Row<Real> (&moving)[4], co
     if constexpr (viscous) {
       V rate[3][3], S_rate[3][4];
       patterns_of_cells(moving, n, present, rate, S_rate);
-      add_viscous_stress(l.dashpots, F, inverse_transposed, S, rate, S_rate, P, v);
+      add_viscous_stress(l.dashpots, F, inverse_transposed, rate, P);
+      turned_back_rates(F, S, rate, S_rate, v);
       add_hourglass_forces(l.dashpots, v, w);
     }
     for (int i = 0; i < 3; ++i) {

@@ -46,18 +46,6 @@ MassSpringModel bar_of_three_materials(int halved) {
   return model;
 }
 
-/// The same with a form of its own in every cell, in which everything is coupled.
-MassSpringModel with_measured_cells(MassSpringModel model) {
-  MeasuredCells measured;
-  for (std::size_t c = 0; c < model.network.cells.size(); ++c) {
-    const DeformationForm averaged = form_of(*averaged_springs_of(model), model.network.cells.shape(c));
-    const Eigen::VectorXd r = flat(test::noise(6, 1, static_cast<unsigned>(c)));
-    measured.add_form(averaged + averaged.trace() / 100 * r * r.transpose());
-  }
-  model.laws[0] = measured;
-  return model;
-}
-
 std::vector<MassSpringModel> models() {
   std::vector<MassSpringModel> all;
   for (const double nu : {-0.5, 0.3, 0.499})
@@ -72,8 +60,8 @@ std::vector<MassSpringModel> models() {
   all.push_back({all.back().network, {*averaged_springs_of(all.back())}});  // without its anchors
   all.push_back(bar_of_three_materials(0));
   all.push_back(bar_of_three_materials(12));
-  all.push_back(with_measured_cells(bar(test::model("hybmss_avg"))));
-  all.push_back(with_measured_cells(bar(test::model("hybmss_avg"), 0.499)));
+  all.push_back(test::with_measured_cells(bar(test::model("hybmss_avg"))));
+  all.push_back(test::with_measured_cells(bar(test::model("hybmss_avg"), 0.499)));
   const Mesh boxes = block_mesh({1.2, 1.6, 0.7}, {4, 3, 5});
   all.push_back(build_model(test::model("hybmss_avg"), boxes, {1e4, 0.3, 1000}));
   return all;
@@ -96,9 +84,9 @@ void expect_plain_forces(double tolerance) {
     const NodalVectors expected = forces(model, x);
     NodalVectors f, damped = expected;
     ASSERT_TRUE(expected.allFinite());
-    const AveragedSprings law = averaged_springs_of(model) ? *averaged_springs_of(model) : AveragedSprings{1e5, 1e5};
-    law.add_viscous_forces(model.network, x, v, retardation, damped);
-    hand_back(model.network.cells.carried, damped);
+    const Viscosity viscosity = Viscosity::of(model, {1e4, 0.3, 1000}, retardation);
+    const AveragedSprings& law = viscosity.cells();
+    viscosity.add_forces(model.network, x, v, damped);
     ASSERT_GT(worst(damped, expected), 0.01);
     for (const InstructionSet set : usable_instruction_sets()) {
       CellForces<Real>(model, set).at(x, v, f);
