@@ -64,6 +64,16 @@ grep -qF "E of core = 1e+06 Pa" "$work/moduli.log" || fail "moduli: not named" "
 "$program" diff "$work/moduli" "$work/soft" >"$work/log" && fail "diff of other cases" "$work/log"
 grep -q "nu of .*moduli is Young.s modulus of core" "$work/log" || fail "diff does not name the list" "$work/log"
 
+# A springs file of the body is a model like the one that it was written by, and of these regions alone.
+"$program" export "$work/soft.toml" --to springs --out "$work/soft.json" >"$work/log" 2>&1 || stop "no springs file"
+sed 's/models = .*/models = ["hybmss_avg", { file = "soft.json", label = "own" }]/; s/elements = .*/elements = []/' "$work/soft.toml" >"$work/own.toml"
+"$program" compare "$work/own.toml" --out "$work/own" >"$work/log" 2>&1 || stop "a springs file of two materials is no model"
+awk -F, '$6 ~ /^region/ { if ($3 == "own") own[$6] = $7; else built[$6] = $7 }
+  END { for (m in own) { d = built[m] - own[m]; ++n; if (d < 0) d = -d; if (!(m in built) || d > 1e-9 * (own[m] < 0 ? -own[m] : own[m])) { print m, built[m], own[m]; bad = 1 } }
+        exit bad || n < 10 }' "$work/own/results.csv" >"$work/log" || fail "a springs file moves otherwise than its model" "$work/log"
+sed 's/^youngs_modulus_Pa = 1e3/youngs_modulus_Pa = 2e3/' "$work/own.toml" >"$work/other.toml"
+refused "other.toml:[0-9]+:[0-9]+: compare.models: soft.json: /regions: core .E = 1000 Pa, nu = 0.3, .*allowed: the ..region..s of the case, core .E = 2000 Pa" compare "$work/other.toml" --out "$work/none"
+
 # spoilt NAME PATTERN SED-EXPRESSION: one line that says file, line, key, what is allowed
 spoilt() {
   ball_case 1e5 0.3 | sed -E "$3" >"$work/case.toml"
