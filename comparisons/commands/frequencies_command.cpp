@@ -207,13 +207,13 @@ int FrequenciesCommand::run() const try {
   std::vector<KnownQuantity> known;
   const PreparedCase prepared = [&] {
     const Status::Working working(status, experiment.name);
-    return prepare_lattices(experiment);
+    return at_setting(prepare_lattices(experiment), 0);
   }();
   if (!out_.empty()) fs::create_directories(out_);
   for (const IsotropicMaterial& material : experiment.materials) {
     const auto solved = [&] {
       const Status::Working working(status, fmt::format("{}, nu = {:g}", experiment.name, material.poisson_ratio));
-      return natural_frequencies(at_setting(prepared, 0), material, options_);
+      return natural_frequencies(prepared, material, options_);
     }();
     std::ranges::copy(known_quantities(experiment, records_of(solved.front())), std::back_inserter(known));
     for (const FrequencyTable& t : solved) {

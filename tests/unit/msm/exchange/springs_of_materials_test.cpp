@@ -52,7 +52,7 @@ TEST(SpringsOfMaterials, AreReadAsTheyWereWritten) {
 }
 
 TEST(SpringsOfMaterials, BendLikeTheModelTheyCameFrom) {
-  const Mesh body = test::layered_block({2, 2, 3}, {2, 2, 6}, 2, 1.7);
+  const Mesh body = test::layered_block({2, 2, 3}, {2, 2, 6}, 2, 1.45);
   const CutBody cut = cut_body({Vec3(-0.13, -0.21, -0.17), 0.5, {5, 5, 7}}, body);
   const Mesh cubes = voxelise(cut.grid, body).mesh;
   SpringsFile file;
