@@ -459,7 +459,7 @@ function convergenceSection(section) {
   const chosen = () => cases.find(c => c.id === caseChoice.value);
   function update() {
     replaceOptions(measureChoice, measureChoices([chosen()]));
-    replaceOptions(lineChoice, [...chosen().nus.map(nu => ['nu:' + nu, `all models at ${settingText(result, nu)}`]),
+    replaceOptions(lineChoice, [...chosen().nus.map(nu => ['nu:' + nu, `all models at ${settingText(chosen(), nu)}`]),
                                 ...chosen().models.map(model => ['model:' + model, `all ${chosen().listed.symbol} of ${model}`])]);
     draw();
   }
