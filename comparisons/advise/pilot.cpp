@@ -12,6 +12,7 @@
 #include "comparisons/judge/measures.h"
 #include "comparisons/judge/reference_value.h"
 #include "comparisons/prepare/sampling.h"
+#include "comparisons/prepare/voxel_body.h"
 #include "comparisons/reference/reference_grids.h"
 #include "comparisons/run/prepare.h"
 #include "fem_reference/exchange/reference.h"
@@ -146,6 +147,7 @@ Experiment pilot_case(Experiment e, const IsotropicMaterial& material, const std
   all.insert(all.end(), at.reference.begin(), at.reference.end());
   std::sort(all.begin(), all.end());
   all.erase(std::unique(all.begin(), all.end()), all.end());
+  e.body.coarsened = false;  // beside the others, by pilot_model()
   e.body.cells.clear();
   e.body.voxel_edges.clear();
   e.body.voxel_counts.clear();
@@ -204,6 +206,13 @@ void extrapolate_fields(PilotModel& model, const std::vector<NodalVectors>& fiel
   model.beyond = {product(a, a, weights) / size, product(a, b, weights) / size, product(b, b, weights) / size};
 }
 
+/// Whether the cells of a model can be measured in finer ones.
+bool can_be_measured(const Experiment& e, const ModelParameters& p) {
+  const bool finite = e.model_kinematics() == Kinematics::finite;
+  return p.cut.value_or(false) && p.row.extension == Extension::averaging && p.shift == 0 &&
+         p.curve.value_or(StrainCurve::hencky) == StrainCurve::hencky && (e.regions.empty() || !finite);
+}
+
 /// A pilot while it is being solved.
 struct PilotRun {
   const PreparedCase& prepared;
@@ -219,14 +228,27 @@ struct PilotRun {
   }
 };
 
-PilotModel pilot_model(const PilotRun& run, std::size_t number) try {
-  const ModelParameters& p = run.prepared.models[number];
+std::string label_of(const PilotRun& run, std::size_t number, bool measured) {
+  return run.prepared.experiment.models[number].label + (measured ? " coarsened=true" : "");
+}
+
+/// @param measured its cells are measured in finer ones
+PilotModel pilot_model(const PilotRun& run, std::size_t number, bool measured = false) try {
+  ModelParameters p = run.prepared.models[number];
+  p.coarsened = measured;
   PilotModel out;
-  out.label = run.prepared.experiment.models[number].label;
+  out.label = label_of(run, number, measured);
+  if (measured) out.most_cells = most_measured_cells;
   std::vector<NodalVectors> fields;
-  const Lattice& last = *run.every.back();
+  Lattice last;
   for (std::size_t i = 0; i < run.every.size(); ++i) {
-    const Lattice& lattice = *run.every[i];
+    last = *run.every[i];
+    if (measured) {
+      progress::phase(fmt::format("measuring {} cells", last.cut->cells.size()));
+      last.measured = to_be_measured(run.prepared, last);
+      describe(last.measured->measured(p, run.material));
+    }
+    const Lattice& lattice = last;
     progress::phase(fmt::format("{} on {} cells", out.label, cells_of(lattice)));
     const LatticeSolve s = solve_on(run.prepared, lattice, p, run.material);
     if (!s.state.ok) {
@@ -251,7 +273,7 @@ PilotModel pilot_model(const PilotRun& run, std::size_t number) try {
   throw;
 } catch (const std::exception& e) {  // no network with this material's moduli, or of this few cells
   PilotModel none;
-  none.label = run.prepared.experiment.models[number].label;
+  none.label = label_of(run, number, measured);
   none.failure = e.what();
   return none;
 }
@@ -355,7 +377,10 @@ Pilot solve_pilot(const Experiment& experiment, const IsotropicMaterial& materia
   out.rotation_deg = deformation.rotation * 180 / std::numbers::pi;
   out.size = prepared.body.size;
   out.volume = volume(mesh, mesh.nodes);
-  for (std::size_t m = 0; m < prepared.models.size(); ++m) out.models.push_back(pilot_model(run, m));
+  for (std::size_t m = 0; m < prepared.models.size(); ++m) {
+    out.models.push_back(pilot_model(run, m));
+    if (can_be_measured(e, prepared.models[m])) out.models.push_back(pilot_model(run, m, true));
+  }
   out.elements = pilot_elements(run);
   return out;
 }

@@ -1,6 +1,7 @@
 // A case solved on coarse lattices by its models: errors that finer lattices will have.
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -35,6 +36,7 @@ struct PilotModel {
   std::string failure;           ///< why there are no errors
   std::vector<double> cells;     ///< of the lattices, ascending
   std::vector<double> errors;    ///< on them, against the pilot's reference
+  double most_cells = HUGE_VAL;  ///< that it has on a lattice
   /// On finer lattices what the model is off from its limit falls with the edge to the power `order`.  The limit is the
   /// reference, and what falls is the excess of stiffness e / (1 - e); or, for springs of another Poisson's ratio, one
   /// of their own, a at t = 0.

@@ -87,11 +87,8 @@ Entry by_calculix(const Question& q, const Cells& cells) {
   const calculix::Solution s = calculix::solve(deck, 600);
   throw_if_interrupted();
   if (!s.ok) throw std::runtime_error(s.message);
-  Entry entry{3 * deck.mesh.nodes.rows(), s.seconds, NodalVectors::Zero(q.coarse.nodes.rows(), 3)};
-  for (Eigen::Index n = 0; n < q.coarse.nodes.rows(); ++n)
-    for (const auto& [node, weight] : calculix::weights_at(deck.mesh, deck.linear, q.coarse.nodes.row(n)))
-      entry.displacement.row(n) += weight * s.displacement.row(node);
-  return entry;
+  return {3 * deck.mesh.nodes.rows(), s.seconds,
+          calculix::weights_at(deck.mesh, deck.linear, q.coarse.nodes) * s.displacement};
 }
 
 Entry by_us(const Question& q, const Cells& cells) {

@@ -14,6 +14,7 @@ namespace springproof {
 struct CrossCheckOptions {
   std::optional<double> poisson_ratio;  ///< empty: every one of the case
   Cells cells = {0, 0, 0};              ///< finest of CalculiX' three grids; {0,0,0} = chosen
+  int modes = 0;                        ///< natural frequencies compared, instead of what the loads do; 0: none
   double time_limit = 600;              ///< per run of ccx [s]
 };
 

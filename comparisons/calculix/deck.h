@@ -17,6 +17,12 @@ struct HeldComponent {
   int load;       ///< index into Experiment::loads
 };
 
+/// What is asked of a body, if not its equilibrium.
+struct DeckTask {
+  int modes = 0;  ///< natural frequencies as it is held, at small displacements
+  int steps = 0;  ///< equal steps in time of its motion
+};
+
 struct Deck {
   Experiment experiment;
   IsotropicMaterial material;  ///< of what is in no region
@@ -27,6 +33,9 @@ struct Deck {
   NodalVectors forces;              ///< concentrated loads [N]: all but gravity
   Vec3 gravity = Vec3::Zero();      ///< sum of all [m/s^2]
   int steps = 1;                    ///< a large rotation is applied in steps along its arc
+  DeckTask task = {};
+  NodalWeights at_probes;      ///< a row per probe; of a motion, else empty
+  Vec3 centre = Vec3::Zero();  ///< of mass; of a motion [m]
 };
 
 /// The largest Poisson's ratio for fully integrated elements; above, reduced integration with eight points, which does
@@ -43,13 +52,17 @@ std::string kinematics_with_counterpart();
 /// @throws InputError if the case's law has no counterpart, naming those that have.
 void require_counterpart(const Experiment& experiment);
 
+/// @throws InputError naming what of a motion has no counterpart, with its place in the file.
+void require_motion_counterpart(const Experiment& experiment);
+
 /// @param mesh with Mesh::materials where the case has regions, each of which is a section of its own
 /// @throws InputError as require_counterpart; for an unknown patch, a point force outside the body, two patches of the
 ///   same name once written as a set.
-Deck make_deck(const Experiment& experiment, const IsotropicMaterial& material, const Mesh& mesh);
+Deck make_deck(const Experiment& experiment, const IsotropicMaterial& material, const Mesh& mesh, DeckTask task = {});
 
 /// Writes the deck, SI units.  Nodes and elements count from 1.  Printed into the .dat file at the end of the
-/// last step: U of ALL_NODES, RF of HELD_NODES, their totals per patch.
+/// last step: U of ALL_NODES, RF of HELD_NODES, their totals per patch; or the frequencies; or at every step in time U
+/// of AT_PROBES.
 void write(const Deck& deck, std::ostream& out);
 
 /// External nodal loads at the full load, gravity included [N]: contained in RF in addition to the support forces.

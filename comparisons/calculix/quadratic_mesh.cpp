@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <optional>
 
 #include "meshes/locate/locate.h"
@@ -279,24 +280,35 @@ std::optional<PlaceInElement> place_in_hexahedra(const Mesh& mesh, const Vec3& p
   return PlaceInElement{place->cell, xi};
 }
 
-std::optional<PlaceInElement> place_in_tetrahedra(const Mesh& mesh, const Vec3& point) {
-  const TetrahedronLocator::Place place = TetrahedronLocator(mesh.nodes, mesh.tetrahedra)(point);
+/// Finds the elements of points.
+std::function<std::optional<PlaceInElement>(const Vec3&)> finder(const Mesh& mesh, double reach) {
+  if (!mesh.hexahedra.empty()) return [&mesh](const Vec3& point) { return place_in_hexahedra(mesh, point); };
   const double size = (mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff()).norm();
-  if (place.outside > 1e-9 * size) return {};
-  return PlaceInElement{place.cell, place.weights.tail<3>()};
+  const auto locator = std::make_shared<TetrahedronLocator>(mesh.nodes, mesh.tetrahedra);
+  return [locator, most = std::max(reach, 1e-9 * size)](const Vec3& point) -> std::optional<PlaceInElement> {
+    const TetrahedronLocator::Place place = (*locator)(point);
+    if (place.outside > most) return {};
+    return PlaceInElement{place.cell, place.weights.tail<3>()};
+  };
 }
 
 }  // namespace
 
-std::vector<std::pair<int, double>> weights_at(const QuadraticMesh& mesh, const Mesh& linear, const Vec3& point) {
-  const auto place = linear.hexahedra.empty() ? place_in_tetrahedra(linear, point) : place_in_hexahedra(linear, point);
-  if (!place)
-    throw InputError(fmt::format("the point ({:.6g}, {:.6g}, {:.6g}) m lies in no element of the body", point.x(),
-                                 point.y(), point.z()));
-  const std::vector<int>& nodes = mesh.elements[place->element];
-  const Eigen::VectorXd shape = basis(nodes.size(), place->xi).value;
-  std::vector<std::pair<int, double>> weights;
-  for (std::size_t i = 0; i < nodes.size(); ++i) weights.emplace_back(nodes[i], shape[static_cast<Eigen::Index>(i)]);
+NodalWeights weights_at(const QuadraticMesh& mesh, const Mesh& linear, const NodalVectors& points, double reach) {
+  std::vector<Eigen::Triplet<double>> entries;
+  const auto find = finder(linear, reach);
+  for (Eigen::Index p = 0; p < points.rows(); ++p) {
+    const std::optional<PlaceInElement> place = find(points.row(p).transpose());
+    if (!place)
+      throw InputError(fmt::format("the point ({:.6g}, {:.6g}, {:.6g}) m lies in no element of the body", points(p, 0),
+                                   points(p, 1), points(p, 2)));
+    const std::vector<int>& nodes = mesh.elements[place->element];
+    const Eigen::VectorXd shape = basis(nodes.size(), place->xi).value;
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      entries.emplace_back(static_cast<int>(p), nodes[i], shape[static_cast<Eigen::Index>(i)]);
+  }
+  NodalWeights weights(points.rows(), mesh.nodes.rows());
+  weights.setFromTriplets(entries.begin(), entries.end());
   return weights;
 }
 

@@ -2,6 +2,7 @@
 // functions and integrals of these.
 #pragma once
 
+#include <Eigen/SparseCore>
 #include <functional>
 #include <vector>
 
@@ -49,10 +50,15 @@ Eigen::VectorXd nodal_volumes(const QuadraticMesh& mesh);
 /// Consistent loads [N] of a body force given at rest positions [N/m^3].
 NodalVectors nodal_body_forces(const QuadraticMesh& mesh, const std::function<Vec3(const Vec3&)>& body_force);
 
-/// Nodes and values of their shape functions at a rest position inside the body.  `linear` is the mesh from which
-/// `mesh` was made: of hexahedra or of tetrahedra.
-/// @throws InputError naming the point if it lies in no element.
-std::vector<std::pair<int, double>> weights_at(const QuadraticMesh& mesh, const Mesh& linear, const Vec3& point);
+/// Values of the nodes' shape functions [1], one row per point.
+using NodalWeights = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+
+/// At rest positions inside the body.
+/// @param linear the mesh from which `mesh` was made: of hexahedra or of tetrahedra
+/// @param points n x 3 [m]
+/// @param reach beyond tetrahedra, as far as the nearest is taken for a point [m]
+/// @throws InputError naming a point if it lies in no element.
+NodalWeights weights_at(const QuadraticMesh& mesh, const Mesh& linear, const NodalVectors& points, double reach = 0);
 
 struct VolumeChange {
   double exact = 0;        ///< (V' - V) / V, by the elements' own interpolation [1]

@@ -117,6 +117,70 @@ Printed read_dat(std::istream& in, Eigen::Index nodes) {
   return printed;
 }
 
+std::vector<std::pair<double, NodalVectors>> read_path(std::istream& in, Eigen::Index nodes) {
+  std::vector<std::pair<double, NodalVectors>> path;
+  bool of_probes = false;
+  for (std::string line; std::getline(in, line);) {
+    std::istringstream words(line);
+    std::vector<std::string> word;
+    for (std::string w; words >> w;) word.push_back(w);
+    if (line.find(" for set ") != std::string::npos) {
+      of_probes = word[0] == "displacements" && line.find(" AT_PROBES ") != std::string::npos;
+      if (of_probes) path.emplace_back(number(word.back()), NodalVectors::Zero(nodes, 3));
+    } else if (of_probes && word.size() == 4) {
+      const long node = std::stol(word[0]) - 1;
+      if (node < 0 || node >= nodes) throw std::runtime_error(fmt::format("ccx printed a node {}", node + 1));
+      for (int c = 0; c < 3; ++c) path.back().second(node, c) = number(word[1 + c]);
+    }
+  }
+  return path;
+}
+
+std::vector<double> read_frequencies(std::istream& in) {
+  std::vector<double> frequencies;
+  bool table = false;
+  for (std::string line; std::getline(in, line);) {
+    if (line.find("E I G E N V A L U E") != std::string::npos) table = true;
+    if (line.find("P A R T I C I P A T I O N") != std::string::npos) break;
+    std::istringstream words(line);
+    std::vector<std::string> word;
+    for (std::string w; words >> w;) word.push_back(w);
+    if (table && word.size() == 5 && word[0] == std::to_string(frequencies.size() + 1))
+      frequencies.push_back(number(word[3]));
+  }
+  return frequencies;
+}
+
+namespace {
+
+void fill_frequencies(const Deck& deck, std::istream& dat, Solution& solution) {
+  solution.frequencies = read_frequencies(dat);
+  solution.ok = static_cast<int>(solution.frequencies.size()) >= deck.task.modes;
+  if (!solution.ok) solution.message = fmt::format("ccx found {} modes", solution.frequencies.size());
+}
+
+/// A released body's first block is its equilibrium, in a step of one second.
+void fill_path(const Deck& deck, std::istream& dat, Solution& solution) {
+  const bool released = deck.experiment.dynamics->released;
+  std::vector<std::pair<double, NodalVectors>> path = read_path(dat, deck.mesh.nodes.rows());
+  if (released)
+    path.erase(path.begin(),
+               std::find_if(path.begin(), path.end(), [](const auto& at) { return at.first > 1 - 1e-6; }));
+  else
+    path.insert(path.begin(), {0, NodalVectors::Zero(deck.mesh.nodes.rows(), 3)});
+  if (static_cast<int>(path.size()) != deck.task.steps + 1) {
+    solution.message = fmt::format("ccx made {} steps of {}", static_cast<int>(path.size()) - 1, deck.task.steps);
+    return;
+  }
+  for (int i = 0; i <= deck.task.steps; ++i) {
+    solution.time.push_back(deck.experiment.dynamics->duration * i / deck.task.steps);
+    solution.path.push_back(deck.at_probes * path[i].second);
+  }
+  solution.ok = true;
+}
+
+}  // namespace
+
 Solution solve(const Deck& deck, double time_limit) {
   const fs::path file = program();
   if (file.empty()) throw std::runtime_error("ccx is not on PATH");
@@ -138,6 +202,11 @@ Solution solve(const Deck& deck, double time_limit) {
   if (!solution.message.empty()) return solution;
   std::ifstream dat(folder.path / "case.dat");
   try {
+    if (deck.task.modes > 0)
+      fill_frequencies(deck, dat, solution);
+    else if (deck.task.steps > 0)
+      fill_path(deck, dat, solution);
+    if (deck.task.modes > 0 || deck.task.steps > 0) return solution;
     const Printed printed = read_dat(dat, deck.mesh.nodes.rows());
     if (printed.time < deck.steps * (1 - 1e-6))
       solution.message = fmt::format("ccx stopped at {:.4g} % of the load", 100 * printed.time / deck.steps);

@@ -31,6 +31,12 @@ struct Printed {
 /// @throws std::runtime_error if a node's values are missing.
 Printed read_dat(std::istream& in, Eigen::Index nodes);
 
+/// Frequencies [Hz] in a .dat file of a deck with modes, ascending.
+std::vector<double> read_frequencies(std::istream& in);
+
+/// Displacements of AT_PROBES in a .dat file of a deck that moves, the others of its `nodes` nodes 0, by time.
+std::vector<std::pair<double, NodalVectors>> read_path(std::istream& in, Eigen::Index nodes);
+
 /// Error bounds of a solution due to printing with seven digits.
 struct PrintFloor {
   double force = 0;         ///< of a patch [N]
@@ -41,9 +47,12 @@ struct PrintFloor {
 
 struct Solution {
   bool ok = false;
-  std::string message;        ///< reason of failure: ccx' own message
-  NodalVectors displacement;  ///< of all nodes of the deck [m]
-  Field field;                ///< on the mesh with corner nodes only
+  std::string message;              ///< reason of failure: ccx' own message
+  NodalVectors displacement;        ///< of all nodes of the deck [m]
+  Field field;                      ///< on the mesh with corner nodes only
+  std::vector<double> frequencies;  ///< of DeckTask::modes, instead of all this [Hz]
+  std::vector<double> time;         ///< of DeckTask::steps, instead of all this: 0 and the ends of the steps [s]
+  std::vector<NodalVectors> path;   ///< displacements of the probes at these times [m]
   PrintFloor floor;
   double seconds = 0;  ///< CPU time of ccx
 };

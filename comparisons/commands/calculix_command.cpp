@@ -26,6 +26,10 @@ void CrossCheckCommand::add_options(CLI::App& command) {
                   "CalculiX' finest grid, divisible by 4 (default: about 1728 elements, 512 at finite strain)")
       ->expected(3)
       ->check(CLI::Range(4, 1000));
+  command
+      .add_option("--modes", options_.modes,
+                  "natural frequencies compared, instead of what the loads do (default: none)")
+      ->check(CLI::Range(1, 100));
   command.add_option("--time-limit", options_.time_limit, "per run of ccx [s]")
       ->check(positive())
       ->capture_default_str();

@@ -148,13 +148,10 @@ void describe(const fem::Solution& finest, Run& run) {
 
 }  // namespace
 
-MotionReference solve_motion(const PreparedCase& prepared, const IsotropicMaterial& material,
-                             const RunKeeper& keeper) try {
+MotionReference limit_of_motion(const PreparedCase& prepared, std::vector<fem::Solution> solutions) {
   const Experiment& e = prepared.experiment;
   MotionReference out;
-  const fem::Request request = motion_request(prepared, material);
-  out.run.cells = request.grids[2].cells;
-  std::vector<fem::Solution> solutions = solve_each(request, keeper);
+  out.run.cells = solutions[2].grid.cells;
   for (const fem::Solution& s : solutions)
     if (!s.ok) {
       out.run.message = fmt::format("{} cells: {}", cells_text(s.grid.cells, " x "), s.message);
@@ -177,12 +174,19 @@ MotionReference solve_motion(const PreparedCase& prepared, const IsotropicMateri
   out.history.probe = liveliest(out.history, e.probes.front().name);
   measure_limits(prepared, probes, out);
   out.history.measured["uncertainty"] = out.uncertainty;
-  out.history.names.emplace_back("kinetic_energy");
-  out.history.units.emplace_back("J");
-  out.history.values.push_back(finest.kinetic_energy);
+  if (!finest.kinetic_energy.empty()) {
+    out.history.names.emplace_back("kinetic_energy");
+    out.history.units.emplace_back("J");
+    out.history.values.push_back(finest.kinetic_energy);
+  }
   describe(finest, out.run);
   out.run.message = limit.note;
   return out;
+}
+
+MotionReference solve_motion(const PreparedCase& prepared, const IsotropicMaterial& material,
+                             const RunKeeper& keeper) try {
+  return limit_of_motion(prepared, solve_each(motion_request(prepared, material), keeper));
 } catch (const NoRoom&) {  // no fault of the case
   throw;
 } catch (const InputError&) {

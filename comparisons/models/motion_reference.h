@@ -35,6 +35,11 @@ fem::Request motion_request(const PreparedCase& prepared, const IsotropicMateria
 MotionReference solve_motion(const PreparedCase& prepared, const IsotropicMaterial& material,
                              const RunKeeper& keeper = {});
 
+/// What three grids and two steps say together.
+/// @param solutions of motion_request(), with `time` and `path`, by this or another program
+/// @return without a history, and with `run.message`, where one of them has no result or nothing moves
+MotionReference limit_of_motion(const PreparedCase& prepared, std::vector<fem::Solution> solutions);
+
 /// Distance of the probes' displacements from the reference in time: root of the mean square over time, divided by
 /// that of the reference.
 double history_error(const HistoryRecord& model, const HistoryRecord& reference);

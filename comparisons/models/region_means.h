@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "msm/laws/laws.h"
+#include "problem/loads.h"
 #include "problem/region.h"
 
 namespace springproof {

@@ -204,21 +204,7 @@ std::string refinement_note(const RefinedBody& refined, double accuracy) {
 /// Measures the cells of a lattice for all models and materials that need it, and notes how far they are off.
 /// @throws std::invalid_argument where averaged springs are as good.
 void measure_lattice(PreparedCase& prepared, Lattice& lattice) {
-  constexpr std::size_t most_measured = 10000;  // beyond, a finer lattice takes less time than measuring
-  if (lattice.cut->cells.size() > most_measured)
-    throw std::invalid_argument(fmt::format(
-        "coarsened: {} cells take longer to measure than a finer lattice to solve (allowed: up to {}); take larger "
-        "cells, or averaged springs",
-        lattice.cut->cells.size(), most_measured));
-  std::set<std::string> held;  // along all axes; what a support leaves free is measured free
-  for (const Load& load : prepared.loads) {
-    if (!prescribes_displacement(load)) continue;
-    const PrescribedValue value = prescribed_displacement(load, Vec3::Zero(), Kinematics::linear);
-    if (value[0] && value[1] && value[2]) held.insert(*patch_of(load));
-  }
-  lattice.measured = std::make_shared<MeasuredLattice>(lattice.cut, prepared.body.tetrahedra.back(),
-                                                       std::vector<std::string>(held.begin(), held.end()),
-                                                       materials_of(prepared.experiment.regions));
+  lattice.measured = to_be_measured(prepared, lattice);
   std::set<const MeasuredBody*> noted;
   for (const ModelParameters& p : prepared.models)
     for (const IsotropicMaterial& material : prepared.experiment.materials) {
@@ -369,6 +355,23 @@ void prepare_body(PreparedCase& prepared, std::string& hint) {
 }
 
 }  // namespace
+
+std::shared_ptr<MeasuredLattice> to_be_measured(const PreparedCase& prepared, const Lattice& lattice) {
+  if (lattice.cut->cells.size() > most_measured_cells)
+    throw std::invalid_argument(fmt::format(
+        "coarsened: {} cells take longer to measure than a finer lattice to solve (allowed: up to {}); take larger "
+        "cells, or averaged springs",
+        lattice.cut->cells.size(), most_measured_cells));
+  std::set<std::string> held;  // along all axes; what a support leaves free is measured free
+  for (const Load& load : prepared.loads) {
+    if (!prescribes_displacement(load)) continue;
+    const PrescribedValue value = prescribed_displacement(load, Vec3::Zero(), Kinematics::linear);
+    if (value[0] && value[1] && value[2]) held.insert(*patch_of(load));
+  }
+  return std::make_shared<MeasuredLattice>(lattice.cut, prepared.body.tetrahedra.back(),
+                                           std::vector<std::string>(held.begin(), held.end()),
+                                           materials_of(prepared.experiment.regions));
+}
 
 void prepare_voxel_body(PreparedCase& prepared) {
   std::string hint;

@@ -11,6 +11,13 @@ namespace springproof {
 /// @throws InputError for errors in the body, its patches or its voxels.
 void prepare_voxel_body(PreparedCase& prepared);
 
+/// Cut cells of a lattice that are measured at most: beyond, a finer lattice takes less time.
+inline constexpr std::size_t most_measured_cells = 10000;
+
+/// The cut cells of a lattice, to be measured in finer ones and on what the case's supports hold along all axes.
+/// @throws std::invalid_argument if they are too many.
+std::shared_ptr<MeasuredLattice> to_be_measured(const PreparedCase& prepared, const Lattice& lattice);
+
 /// Reactions with torques about the rest centroids of the true body's patches instead of those of `own`.
 std::vector<PatchReaction> about_true_patches(const PreparedCase& prepared, const Mesh& own,
                                               std::vector<PatchReaction> reactions);

@@ -9,7 +9,6 @@ mkdir "$work/empty"
 PATH="$work/empty" "$program" cross-check cross_check/shear_st_venant_kirchhoff >"$work/out" 2>"$work/err"
 [ $? -eq 3 ] && grep -q "apt-get install calculix-ccx" "$work/err" || fail "without ccx" "$work/err"
 
-# A body of voxels: status 2, before anything is meshed.
 cat >"$work/ball.toml" <<'TOML'
 [body]
 geo = "sphere.geo"
@@ -28,9 +27,15 @@ displacement_m = [0, 0, 0]
 [[load]]
 gravity_m_s2 = [0, 0, -1]
 TOML
-SPRINGPROOF_MESH_CACHE=$work/meshes "$program" cross-check "$work/ball.toml" >"$work/out" 2>"$work/err"
-[ $? -eq 2 ] && grep -q "ball.toml:2:7: a body of voxels has no cross-check of its own" "$work/err" || fail "a body of voxels" "$work/err"
+# The cells of a body of tetrahedra, and damping in steps of time: refused before anything is meshed.
+export SPRINGPROOF_MESH_CACHE=$work/meshes
+"$program" cross-check "$work/ball.toml" --cells 4 4 4 >"$work/out" 2>"$work/err"
+[ $? -eq 2 ] && grep -q "edge_m" "$work/err" || fail "cells of a body of voxels" "$work/err"
+sed 's/duration_s/damping_1_s = 1\nduration_s/' "$(dirname "$0")/../../comparisons/experiments/cross_check/struck_bar_st_venant_kirchhoff.toml" >"$work/damped.toml"
+"$program" cross-check "$work/damped.toml" >"$work/out" 2>"$work/err"
+[ $? -eq 2 ] && grep -q "damped.toml:33:1: dynamics: CalculiX' decks have no damping" "$work/err" || fail "damping" "$work/err"
 [ ! -e "$work/meshes" ] || fail "it was meshed first"
+unset SPRINGPROOF_MESH_CACHE
 
 # A law that CalculiX does not have: status 2 and those it has.
 sed 's/st_venant_kirchhoff/hencky/' "$(dirname "$0")/../../comparisons/experiments/cross_check/shear_st_venant_kirchhoff.toml" >"$work/case.toml"
@@ -70,6 +75,15 @@ for law in st_venant_kirchhoff neo_hooke_isochoric; do
   agree cross_check/torsion_$law 0.25 "4 4 4"
 done
 
+# A body of tetrahedra on the same meshes, with the same equations; frequencies, of two materials too; a motion.
+SPRINGPROOF_MESH_CACHE=$work/meshes "$program" cross-check "$work/ball.toml" >"$work/out" 2>"$work/err" || { cat "$work/out"; fail "ball" "$work/err"; }
+grep -q "the same, finest mesh .* yes" "$work/out" || fail "the same mesh" "$work/out"
+"$program" cross-check regions/two_materials --modes 4 >"$work/out" 2>"$work/err" || { cat "$work/out"; fail "modes of two materials" "$work/err"; }
+[ "$(grep -c "^frequency.* yes" "$work/out")" -eq 4 ] || fail "four frequencies" "$work/out"
+sed 's/cells = \[16, 4, 4\]/cells = [8, 4, 4]/; s/samples = 80/samples = 20/' "$(dirname "$0")/../../comparisons/experiments/cross_check/struck_bar_st_venant_kirchhoff.toml" >"$work/struck.toml"
+"$program" cross-check "$work/struck.toml" >"$work/out" 2>"$work/err" || { cat "$work/out"; fail "a motion" "$work/err"; }
+grep -q "probes in time, rms .* yes" "$work/out" || fail "its history" "$work/out"
+
 # A CalculiX with another material must be found out.
 ccx=$(command -v ccx)
 mkdir "$work/other"
@@ -81,6 +95,8 @@ SH
 chmod +x "$work/other/ccx"
 PATH="$work/other:$PATH" "$program" cross-check golec_2019/compression --poisson-ratio 0.25 --cells 8 8 8 >"$work/out" 2>"$work/err"
 [ $? -eq 1 ] && grep -q "force.z_max.z .* NO" "$work/out" || fail "another material was not found out" "$work/out"
+PATH="$work/other:$PATH" "$program" cross-check "$work/ball.toml" >"$work/out" 2>"$work/err"
+[ $? -eq 1 ] && grep -q "the same, finest mesh .* NO" "$work/out" || fail "another material of a ball" "$work/out"
 
 # An interrupt ends ccx and leaves nothing behind.
 mkdir "$work/tmp"

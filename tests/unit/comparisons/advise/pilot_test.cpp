@@ -29,13 +29,15 @@ models = ["hybmss_avg"]
 )",
                                         "round.toml");
   const Pilot pilot = solve_pilot(e, e.materials.front(), {"hybmss_avg"}, {200, 1500});
-  ASSERT_EQ(pilot.models.size(), 2U);
+  ASSERT_EQ(pilot.models.size(), 3U);
   ASSERT_TRUE(pilot.models[0].step);
   EXPECT_EQ(pilot.models[0].step->failure, "");
   EXPECT_GT(pilot.models[0].step->seconds_per_cell, 1e-9);
   EXPECT_GT(pilot.models[0].step->safe_step, 0);
-  EXPECT_EQ(pilot.models[1].label, "hybmss_avg cut=false");
-  EXPECT_FALSE(pilot.models[1].step) << "whole cubes step as blocks do";
+  EXPECT_EQ(pilot.models[1].label, "hybmss_avg coarsened=true");
+  EXPECT_NE(pilot.models[1].failure.find("not worth it"), std::string::npos) << "a bar without notches";
+  EXPECT_EQ(pilot.models[2].label, "hybmss_avg cut=false");
+  EXPECT_FALSE(pilot.models[2].step) << "whole cubes step as blocks do";
   EXPECT_TRUE(pilot.elements.empty()) << "there are none on a staircase";
 }
 

@@ -189,8 +189,10 @@ TEST(CalculixDeck, APointForceActsWithinATetrahedronToo) {
   const Vec3 point(0.5, 0.3, 0.2);
   double sum = 0;
   Vec3 first = Vec3::Zero(), second = Vec3::Zero();  // moments: quadratic fields are reproduced
-  for (const auto& [node, weight] : calculix::weights_at(quadratic, mesh, point)) {
+  const calculix::NodalWeights weights = calculix::weights_at(quadratic, mesh, point.transpose());
+  for (Eigen::Index node = 0; node < quadratic.nodes.rows(); ++node) {
     const Vec3 x = quadratic.nodes.row(node).transpose();
+    const double weight = weights.coeff(0, node);
     sum += weight;
     first += weight * x;
     second += weight * x.cwiseProduct(x);
@@ -198,7 +200,7 @@ TEST(CalculixDeck, APointForceActsWithinATetrahedronToo) {
   EXPECT_NEAR(sum, 1, 1e-14);
   EXPECT_LE((first - point).norm(), 1e-14);
   EXPECT_LE((second - point.cwiseProduct(point)).norm(), 1e-14);
-  EXPECT_THROW(calculix::weights_at(quadratic, mesh, Vec3(1, 1, 1)), InputError);
+  EXPECT_THROW(calculix::weights_at(quadratic, mesh, Vec3(1, 1, 1).transpose()), InputError);
 }
 
 TEST(CalculixDeck, PressurePushesInwards) {
