@@ -23,7 +23,7 @@ set(long
     "golec_2019/(tables/(table2_.*|table3_tension_20|table4_shear_20|table5_torsion_45deg)|figures/fig_5_2MPa)"
     "golec_2019/ten_seconds/(table2_.*|table3_.*|table4_shear_20|table5_torsion_45deg)"
     "bodies/(rabbit_.*|hand_pressed|bar_networks)" "cost/.*" "large_strain/(tension|bending|rabbit_measured)"
-    "motion/(released_bar|struck_bar_averaged|falling_rabbit)" "boxes/struck_bar" "regions/swinging_rod"
+    "motion/(released_bar|struck_bar_averaged|falling_rabbit)" "boxes/struck_bar" "regions/(swinging_rod|tumour)"
     "measured/.*" "verification/(manufactured_(linear|quadratic)_straight|macneal_.*_out_of_plane)")
 
 file(GLOB_RECURSE cases CONFIGURE_DEPENDS RELATIVE ${experiments} ${experiments}/*.toml)

@@ -77,7 +77,7 @@ struct Question {
 
   explicit Question(const Contest& c)
       : experiment(read_experiment(find_cases({c.file}).front())),
-        material(material_of(experiment, 0.25)),
+        material(at_wanted(experiment, 0.25).materials.front()),
         coarse(block_mesh(experiment.body.size, times(c.shape, cells_of_comparison))) {}
 };
 

@@ -153,18 +153,22 @@ SecondOpinion second_opinion(const std::string& measure, const ReferenceValue& c
           ours,    difference,       std::abs(difference) <= calculix.uncertainty + ours.uncertainty};
 }
 
-const IsotropicMaterial& material_of(const Experiment& experiment, std::optional<double> poisson_ratio) {
-  std::vector<double> known;
-  for (const IsotropicMaterial& m : experiment.materials) {
-    if (!poisson_ratio || same_poisson_ratio(m.poisson_ratio, *poisson_ratio)) return m;
-    known.push_back(m.poisson_ratio);
+Experiment at_wanted(const Experiment& experiment, std::optional<double> setting) {
+  const std::vector<double> known = experiment.settings();
+  for (std::size_t s = 0; s < known.size(); ++s) {
+    if (setting && !same_poisson_ratio(known[s], *setting)) continue;
+    Experiment one = experiment.at(s);
+    one.materials = {one.body_material(s)};
+    return one;
   }
-  throw InputError(
-      fmt::format("--poisson-ratio: {} is none of the case's ({})", *poisson_ratio, fmt::join(known, ", ")));
+  throw InputError(fmt::format("--poisson-ratio: {} is none of the case's ({})", *setting, fmt::join(known, ", ")));
 }
 
 int cross_check(const std::filesystem::path& file, const CrossCheckOptions& options) try {
-  const Experiment experiment = read_experiment(file);
+  Experiment experiment = read_experiment(file);
+  if (options.poisson_ratio || experiment.listed.materials.size() == 1)
+    experiment = at_wanted(experiment, options.poisson_ratio);
+  require_one_listed(experiment);
   if (options.modes == 0) calculix::require_counterpart(experiment);
   if (options.modes == 0 && experiment.dynamics && experiment.reference.in_time)
     calculix::require_motion_counterpart(experiment);
@@ -172,12 +176,9 @@ int cross_check(const std::filesystem::path& file, const CrossCheckOptions& opti
     throw InputError("--cells: is for bodies of hexahedra; the tetrahedra of this one have [reference] edge_m");
   end_at_interrupts();
   const PreparedCase prepared = prepare(experiment);
-  std::vector<IsotropicMaterial> materials = experiment.materials;
-  if (options.poisson_ratio) materials = {material_of(experiment, options.poisson_ratio)};
   std::vector<Question> questions;
-  for (const IsotropicMaterial& m : materials) {
+  for (const IsotropicMaterial& m : experiment.materials)
     questions.push_back(question(prepared, experiment.at_rest(m), options));
-  }
   if (!programs_are_there()) return no_program;
   if (children_interrupted()) return interrupted_status;
   int differing = 0;

@@ -30,9 +30,9 @@ struct SecondOpinion {
 /// The verdict from two values with uncertainty.
 SecondOpinion second_opinion(const std::string& measure, const ReferenceValue& calculix, const ReferenceValue& ours);
 
-/// The material of `experiment` with this Poisson's ratio, or its first.
+/// The case at one of its settings alone, or at its first.
 /// @throws InputError listing those of the case.
-const IsotropicMaterial& material_of(const Experiment& experiment, std::optional<double> poisson_ratio);
+Experiment at_wanted(const Experiment& experiment, std::optional<double> setting);
 
 /// Exit statuses of cross_check.
 enum CrossCheckStatus { all_agree = 0, some_differ = 1, no_program = 3 };

@@ -166,18 +166,16 @@ void write_all_shapes(const fs::path& folder, const Experiment& e, const Frequen
     write_shapes(folder / fmt::format("{}-{}-theta{:g}.vtu", stem, m.label, m.consistency), t, m.modes);
 }
 
-/// The case with the wanted of its materials.
-Experiment with_materials(Experiment e, const std::vector<double>& poisson_ratios) {
-  if (poisson_ratios.empty()) return e;
-  std::vector<double> known;
-  for (const IsotropicMaterial& m : e.materials) known.push_back(m.poisson_ratio);
-  std::erase_if(e.materials, [&](const IsotropicMaterial& m) {
-    return std::none_of(poisson_ratios.begin(), poisson_ratios.end(),
-                        [&](double nu) { return same_poisson_ratio(nu, m.poisson_ratio); });
+/// The case with the wanted of its settings.
+Experiment with_settings(Experiment e, const std::vector<double>& wanted) {
+  if (wanted.empty()) return e;
+  const std::vector<double> known = e.settings();
+  e.leave_out_settings([&](double setting) {
+    return std::ranges::none_of(wanted, [&](double w) { return same_poisson_ratio(w, setting); });
   });
-  if (e.materials.empty())
-    throw InputError(fmt::format("--poisson-ratio: {:g} is none of the case's (allowed: {:g})",
-                                 fmt::join(poisson_ratios, ", "), fmt::join(known, ", ")));
+  if (e.settings().empty())
+    throw InputError(fmt::format("--poisson-ratio: {:g} is none of the case's (allowed: {:g})", fmt::join(wanted, ", "),
+                                 fmt::join(known, ", ")));
   return e;
 }
 
@@ -209,7 +207,8 @@ int FrequenciesCommand::run() const try {
   const std::vector<fs::path> found = find_cases({case_});
   if (found.size() > 1) throw InputError(fmt::format("{} is a folder of {} cases; name one", case_, found.size()));
   const Experiment whole = read_experiment(found.front());
-  const Experiment experiment = with_materials(case_of_modes(whole, options_), poisson_ratios_);
+  const Experiment experiment = with_settings(case_of_modes(whole, options_), poisson_ratios_);
+  require_one_listed(experiment);
   end_at_interrupts();
   Status status;
   bool all = true;
@@ -217,7 +216,7 @@ int FrequenciesCommand::run() const try {
   std::vector<KnownQuantity> known;
   const PreparedCase prepared = [&] {
     const Status::Working working(status, experiment.name);
-    return prepare_lattices(experiment);
+    return at_setting(prepare_lattices(experiment), 0);
   }();
   if (!out_.empty()) fs::create_directories(out_);
   for (const IsotropicMaterial& material : experiment.materials) {

@@ -78,11 +78,13 @@ ResultsFolder read_results(const std::filesystem::path& folder) {
   const std::string text = read_named_file(file, "results of `springproof compare`");
   try {
     const json document = json::parse(text);
-    ResultsFolder found{document.at("program").at("version"), document.at("generated"), {}, {}};
+    ResultsFolder found{document.at("program").at("version"), document.at("generated"), {}, {}, {}};
     for (const json& result : document.at("cases")) {
       const json& experiment = result.at("experiment");
       const std::string group = experiment.at("folder"), name = experiment.at("name");
       found.cases.push_back(group.empty() ? name : group + '/' + name);
+      if (const auto listed = experiment.find("listed"); listed != experiment.end() && listed->at("part") != "")
+        found.listed[found.cases.back()] = listed->at("words");
       for (const json& row : result.at("rows")) found.rows.push_back(row_of(row, found.cases.back()));
     }
     return found;

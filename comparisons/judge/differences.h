@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -11,9 +12,10 @@ namespace springproof {
 
 /// What a folder that `springproof compare` wrote holds.
 struct ResultsFolder {
-  std::string version, generated;  ///< of the program; when
-  std::vector<Row> rows;           ///< case_name: as in `cases`
-  std::vector<std::string> cases;  ///< in the order of the report, with their folders: "golec_2019/bending"
+  std::string version, generated;             ///< of the program; when
+  std::vector<Row> rows;                      ///< case_name: as in `cases`
+  std::vector<std::string> cases;             ///< in the order of the report, with their folders: "golec_2019/bending"
+  std::map<std::string, std::string> listed;  ///< of cases that list a modulus of a region: "Poisson's ratio of tumour"
 };
 
 /// @throws InputError if FOLDER/results.json is missing or no document of results; the message names file and reason.

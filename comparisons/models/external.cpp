@@ -277,7 +277,9 @@ void check_external(const PreparedCase& prepared, std::size_t number) {
 
 std::vector<ModelSample> external_samples(const PreparedCase& prepared, const Lattice& lattice, std::size_t number,
                                           const IsotropicMaterial& material) {
-  if (!same_poisson_ratio(poisson_ratio_of(prepared.experiment.models[number]), material.poisson_ratio)) return {};
+  if (!same_poisson_ratio(poisson_ratio_of(prepared.experiment.models[number]),
+                          prepared.experiment.setting_of(material)))
+    return {};
   const External e = read_external(prepared, number);
   if (&lattice != &prepared.lattices[e.lattice]) return {};
   const NodalVectors& nodes = e.mesh().nodes;

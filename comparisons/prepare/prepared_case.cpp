@@ -96,6 +96,12 @@ const Network& FittedNetworks::of(const ModelParameters& parameters, const Mesh&
   return by_springs_per_node_.emplace(key, fitted_on_vertices(parameters, tetrahedra)).first->second;
 }
 
+PreparedCase at_setting(const PreparedCase& prepared, std::size_t setting) {
+  PreparedCase one = prepared;
+  one.experiment = prepared.experiment.at(setting);
+  return one;
+}
+
 EmbeddedModel build_cut_on(const Lattice& lattice, const ModelParameters& parameters,
                            const std::vector<std::string>& held, const IsotropicMaterial& material,
                            const std::vector<IsotropicMaterial>& regions) {

@@ -100,6 +100,9 @@ struct PreparedCase {
   }
 };
 
+/// The case with one material of each region (Experiment::at); meshes and lattices are shared.
+PreparedCase at_setting(const PreparedCase& prepared, std::size_t setting);
+
 /// Builds a model on a lattice, of cut cells if ModelParameters::cut says so.  `in_motion`: every free node has a mass.
 EmbeddedModel build_on(const PreparedCase& prepared, const Lattice& lattice, const ModelParameters& parameters,
                        const IsotropicMaterial& material, bool in_motion);

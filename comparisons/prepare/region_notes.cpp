@@ -100,6 +100,14 @@ std::string gap_note(const std::vector<MaterialRegion>& regions, const MaterialP
                      gap.thickness() / edge, fmt::join(names, " and "), 100 * gap.volume / whole);
 }
 
+[[noreturn]] void refuse_unresolved(const MaterialRegion& region, const MaterialPart& part, double edge,
+                                    const char* which) {
+  throw InputError(region.where,
+                   fmt::format("region: '{}', of {:.3g} m³, fills less than 1/1000 of {} cube of {:.3g} m (allowed: "
+                               "voxel_edge_m up to {:.2g}, a quarter of what it is across)",
+                               region.name, part.volume, which, edge, part.across() / enough_cells));
+}
+
 }  // namespace
 
 std::vector<std::string> region_notes(const std::vector<MaterialRegion>& regions, const Mesh& body, double edge) {
@@ -127,10 +135,14 @@ std::vector<std::string> region_notes(const std::vector<MaterialRegion>& regions
 void require_resolved(const std::vector<MaterialRegion>& regions, const Mesh& body, double edge) {
   for (const auto& [material, part] : by_material(body))
     if (material > 0 && part.volume < least_part * std::pow(edge, 3))
-      throw InputError(regions[material - 1].where,
-                       fmt::format("region: '{}', of {:.3g} m³, fills less than 1/1000 of a cube of {:.3g} m (allowed: "
-                                   "voxel_edge_m up to {:.2g}, a quarter of what it is across)",
-                                   regions[material - 1].name, part.volume, edge, part.across() / enough_cells));
+      refuse_unresolved(regions[material - 1], part, edge, "a");
+}
+
+void refuse_smallest(const std::vector<MaterialRegion>& regions, const Mesh& body, double edge) {
+  const std::map<int, MaterialPart> parts = by_material(body);
+  const auto smallest = std::ranges::min_element(
+      parts, {}, [](const auto& p) { return p.first > 0 ? p.second.volume : std::numeric_limits<double>::infinity(); });
+  refuse_unresolved(regions.at(smallest->first - 1), smallest->second, edge, "every");
 }
 
 }  // namespace springproof

@@ -18,4 +18,7 @@ std::vector<std::string> region_notes(const std::vector<MaterialRegion>& regions
 /// @throws InputError at a region that is smaller than what a cell of this edge [m] keeps of a body.
 void require_resolved(const std::vector<MaterialRegion>& regions, const Mesh& body, double edge);
 
+/// @throws InputError at the smallest region, that it fills no cube enough.
+[[noreturn]] void refuse_smallest(const std::vector<MaterialRegion>& regions, const Mesh& body, double edge);
+
 }  // namespace springproof

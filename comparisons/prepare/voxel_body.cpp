@@ -214,6 +214,16 @@ void measure_lattice(PreparedCase& prepared, Lattice& lattice) {
     }
 }
 
+/// The cells of a body.
+/// @throws InputError at its smallest region, where one has no cell.
+CutBody cut_with_regions(const Experiment& e, const VoxelGrid& grid, const Mesh& body) try {
+  if (!e.regions.empty()) require_resolved(e.regions, body, grid.edge);
+  return cut_body(grid, body);
+} catch (const std::invalid_argument& error) {
+  if (!std::string_view(error.what()).starts_with("voxels: material")) throw;
+  refuse_smallest(e.regions, body, grid.edge);
+}
+
 void cut_lattices(PreparedCase& prepared) {
   const Mesh& true_body = *prepared.body.tetrahedra.back();
   const auto region = std::make_shared<Region>(region_of(true_body));
@@ -246,8 +256,7 @@ void cut_lattices(PreparedCase& prepared) {
     add_cubes(grid);
     const auto is_cut = [](const ModelParameters& p) { return p.cut.value_or(false); };
     if (std::none_of(prepared.models.begin(), prepared.models.end(), is_cut)) continue;
-    if (!prepared.experiment.regions.empty()) require_resolved(prepared.experiment.regions, true_body, edge);
-    CutBody cut = cut_body(grid, true_body);
+    CutBody cut = cut_with_regions(prepared.experiment, grid, true_body);
     prepared.body.notes.push_back(cut_cells_note(prepared, cut));
     if (!prepared.experiment.regions.empty() && edge == edges.back())
       for (std::string& note : region_notes(prepared.experiment.regions, true_body, edge))

@@ -27,7 +27,7 @@ namespace {
 void add_reference_grids(const PreparedCase& prepared, const std::string& element, double grading, const VtuOutput& vtu,
                          fem::Request& request) {
   for (int divisor : {4, 2, 1}) request.grids.push_back({divided(prepared.reference_cells, divisor), element, grading});
-  request.grids.back().vtu = reference_file(vtu, element, request.material.poisson_ratio);
+  request.grids.back().vtu = reference_file(vtu, element, prepared.experiment.setting_of(request.material));
 }
 
 /// Elements that fail on graded grids, whose thin cells are inverted first, are solved on three uniform ones.
@@ -160,7 +160,8 @@ Cells divided(const Cells& cells, int divisor) {
 int fewest_across(const Experiment& e) {
   constexpr double pressures_above = 0.4;  // Poisson's ratio; of quadratic elements
   const auto has_pressures = [](const IsotropicMaterial& m) { return m.poisson_ratio > pressures_above; };
-  const std::vector<IsotropicMaterial> regions = materials_of(e.regions);
+  std::vector<IsotropicMaterial> regions = materials_of(e.regions);
+  regions.insert(regions.end(), e.listed.materials.begin(), e.listed.materials.end());
   const bool any = std::any_of(e.materials.begin(), e.materials.end(), has_pressures) ||
                    std::any_of(regions.begin(), regions.end(), has_pressures);
   return any ? two_on_the_coarsest : two_on_the_coarsest / 2;
@@ -340,7 +341,7 @@ std::map<std::string, ReferenceValue> limits_of(const PreparedCase& prepared, co
 std::vector<ReferenceRecord> records_of(const PreparedCase& prepared, const IsotropicMaterial& material,
                                         const ElementGrids& e) {
   const Experiment& experiment = prepared.experiment;
-  const double nu = material.poisson_ratio;
+  const double nu = experiment.setting_of(material);
   const std::vector<std::map<std::string, double>> values = measures_on_grids(prepared, e);
   std::vector<ReferenceRecord> records;
   for (const auto& [measure, limit] : limits_of(prepared, e)) {

@@ -47,17 +47,18 @@ void write_cells(const std::filesystem::path& file, const CutBody& cut, const No
 void write_series(const CaseResult& result, const std::filesystem::path& folder) {
   std::map<std::string, std::map<double, std::string>> series;
   std::vector<RunKey> keys(result.runs.begin(), result.runs.end());
-  for (const IsotropicMaterial& m : result.experiment.materials)
-    for (const Cells& cells : result.cells) keys.push_back({"fem", m.poisson_ratio, cells});
+  const std::vector<double> settings = result.experiment.settings();
+  for (const double setting : settings)
+    for (const Cells& cells : result.cells) keys.push_back({"fem", setting, cells});
   for (const RunKey& key : keys) {
     const std::string file = file_stem(key) + ".vtu";
     if (std::filesystem::exists(folder / file))
       series[fmt::format("{}_{}", file_name(key.model), fmt::join(key.cells, "x"))][key.poisson_ratio] = file;
   }
   for (const std::string& element : result.experiment.reference.elements)
-    for (const IsotropicMaterial& m : result.experiment.materials)
-      if (const std::string file = reference_name(element, m.poisson_ratio); std::filesystem::exists(folder / file))
-        series["reference_" + element][m.poisson_ratio] = file;
+    for (const double setting : settings)
+      if (const std::string file = reference_name(element, setting); std::filesystem::exists(folder / file))
+        series["reference_" + element][setting] = file;
   for (const auto& [name, files] : series)
     if (files.size() > 1) write_pvd(folder / (name + ".pvd"), {files.begin(), files.end()});
 }

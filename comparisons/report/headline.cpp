@@ -79,14 +79,14 @@ std::string expected_text(const Check& check) {
   return fmt::format("{} ± {}", number_text(check.expected), number_text(check.within));
 }
 
-std::string check_line(const std::string& case_name, const Check& check) {
-  return fmt::format("{}: {}, {} at ν = {}, {}: computed {}, expected {} ({}{}{})", case_name, check.model,
-                     check.measure, nu_text(check.poisson_ratio), cells_words(check.cells), number_text(check.computed),
+std::string check_line(const Experiment& e, const Check& check) {
+  return fmt::format("{}: {}, {} at {}, {}: computed {}, expected {} ({}{}{})", e.name, check.model, check.measure,
+                     setting_text(e, check.poisson_ratio), cells_words(check.cells), number_text(check.computed),
                      expected_text(check), check.source, check.where.empty() ? "" : ", ", check.where);
 }
 
-std::string run_line(const std::string& case_name, const Run& run) {
-  return fmt::format("{}: {} at ν = {}, {}: {}", case_name, run.model, nu_text(run.poisson_ratio),
+std::string run_line(const Experiment& e, const Run& run) {
+  return fmt::format("{}: {} at {}, {}: {}", e.name, run.model, setting_text(e, run.poisson_ratio),
                      cells_words(run.cells), run.message.empty() ? "no reason given" : run.message);
 }
 
@@ -110,8 +110,8 @@ class Collector {
       if (model.in_motion) motions_.insert(model.label);
       if (is_external(model) && !is_own_model(model)) beside_.insert(model.label);
     }
-    for (const Check& check : result.checks) add_check(check);
-    for (const Run& run : result.runs) add_run(run);
+    for (const Check& check : result.checks) add_check(e, check);
+    for (const Run& run : result.runs) add_run(e, run);
     append(headline_.failures, failures_of(result));
     append(headline_.verification, verification_lines(result));
     append(headline_.measured, measured_lines(result));
@@ -163,11 +163,11 @@ class Collector {
     return order_.size() - 1;
   }
 
-  void add_run(const Run& run) {
+  void add_run(const Experiment& e, const Run& run) {
     if (run.kind == "fem") beside_.insert(run.model);
     if (compares_displacement_ && run.kind == "msm" && !motions_.contains(run.model)) models_[{large_, run.model}];
     order_of(run.model);
-    if (!run.ok) headline_.failed_runs.push_back(run_line(case_name_, run));
+    if (!run.ok) headline_.failed_runs.push_back(run_line(e, run));
   }
 
   void add_rows(const CaseResult& result) {
@@ -182,10 +182,15 @@ class Collector {
 
   void add_row(const CaseResult& result, const Row& row) {
     const auto is = [&](const char* measure) { return row.measure == measure; };
-    const double nu = row.poisson_ratio;
-    if (is("promised_error")) models_[{large_, row.model}].promised[nu].take({row.value, 0, case_name_});
+    const Experiment& e = result.experiment;
+    // A list of a region is named behind the case; what models are ranked by is what the rest of the body has.
+    const bool of_region = e.listed.region > 0;
+    const double nu = of_region ? e.materials.front().poisson_ratio : row.poisson_ratio;
+    const std::string where =
+        of_region ? fmt::format("{} ({})", case_name_, setting_text(e, row.poisson_ratio)) : case_name_;
+    if (is("promised_error")) models_[{large_, row.model}].promised[nu].take({row.value, 0, where});
     if (!row.error || !std::isfinite(*row.error)) return;
-    const Worst error{std::abs(*row.error), row.reference_uncertainty.value_or(0), case_name_,
+    const Worst error{std::abs(*row.error), row.reference_uncertainty.value_or(0), where,
                       is("reaction_error") ? reaction_words(row.of) : "displacement"};
     if (is("motion_error")) in_time_[row.model][nu].take(error);
     if (motions_.contains(row.model)) return;
@@ -203,13 +208,13 @@ class Collector {
     (result.experiment.body.is_voxels() ? errors.voxels : errors.blocks) = true;
   }
 
-  void add_check(const Check& check) {
+  void add_check(const Experiment& e, const Check& check) {
     ++(check.verdict == Verdict::pass                   ? headline_.held
        : check.verdict == Verdict::fail                 ? headline_.failed
        : check.verdict == Verdict::reference_too_coarse ? headline_.reference_too_coarse
        : check.verdict == Verdict::no_reference         ? headline_.no_reference
                                                         : headline_.no_result);
-    if (check.verdict == Verdict::fail) headline_.failed_checks.push_back(check_line(case_name_, check));
+    if (check.verdict == Verdict::fail) headline_.failed_checks.push_back(check_line(e, check));
   }
 
   Headline headline_;

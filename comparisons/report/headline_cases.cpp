@@ -54,7 +54,7 @@ void add_doubts(const CaseResult& result, std::size_t case_number, std::vector<D
   if (!has_models(result)) return;
   const auto add = [&](double nu, const char* of, double uncertainty, bool diverges) {
     if (!(uncertainty > (diverges ? harmless_uncertainty : doubtful_uncertainty))) return;
-    const std::string where = at_nu(name_of(result), nu);
+    const std::string where = at_setting(result.experiment, name_of(result), nu);
     const auto known = std::find_if(doubts.begin(), doubts.end(), [&](const Doubt& d) { return d.where == where; });
     Doubt& doubt = known == doubts.end() ? doubts.emplace_back() : *known;
     if (uncertainty >= doubt.uncertainty) doubt = {case_number, where, of, uncertainty, diverges || doubt.diverges};
@@ -80,18 +80,17 @@ std::string reason_of_missing_reference(const CaseResult& result, double nu) {
 void add_missing_references(const CaseResult& result, std::vector<std::string>& lines) {
   for (const Run& run : result.runs)
     if (run.model == fem_in_motion && !run.ok)
-      lines.push_back(
-          fmt::format("{}: there is no reference in time: {}", at_nu(name_of(result), run.poisson_ratio), run.message));
+      lines.push_back(fmt::format("{}: there is no reference in time: {}",
+                                  at_setting(result.experiment, name_of(result), run.poisson_ratio), run.message));
   const std::string element = reference_element_of(result);
   if (element.empty()) return;
-  for (const IsotropicMaterial& material : result.experiment.materials) {
-    const double nu = material.poisson_ratio;
+  for (const double nu : result.experiment.settings()) {
     if (any_of(result.references,
                [&](const ReferenceRecord& r) { return r.poisson_ratio == nu && r.element == element; }))
       continue;
     const std::string reason = reason_of_missing_reference(result, nu);
-    lines.push_back(
-        fmt::format("{}: there is no reference{}", at_nu(name_of(result), nu), reason.empty() ? "" : ": " + reason));
+    lines.push_back(fmt::format("{}: there is no reference{}", at_setting(result.experiment, name_of(result), nu),
+                                reason.empty() ? "" : ": " + reason));
   }
 }
 
@@ -162,13 +161,14 @@ std::string value_text(const std::optional<double>& x) {
 
 /// Of a Check or a PublishedRow; `bound`: the target is one.
 template <class Item>
-std::string verification_line(const std::string& name, const Item& item, double target, double uncertainty, bool bound,
+std::string verification_line(const CaseResult& result, const Item& item, double target, double uncertainty, bool bound,
                               const std::string& verdict) {
-  const std::string what = fmt::format("{}, {} at ν = {}", item.model, item.measure, nu_text(item.poisson_ratio));
+  const std::string what =
+      fmt::format("{}, {} at {}", item.model, item.measure, setting_text(result.experiment, item.poisson_ratio));
   const std::string value = value_text(item.computed) +
                             (std::isfinite(uncertainty) && !bound ? fmt::format(" ± {:.2g}", uncertainty) : "") +
                             (item.unit == "1" ? "" : " " + item.unit);
-  return fmt::format("{:<44} {:<52} {:<30} target {:<12} {:<12} {}", name, what, value,
+  return fmt::format("{:<44} {:<52} {:<30} target {:<12} {:<12} {}", name_of(result), what, value,
                      (bound ? "≥ " : "") + value_text(target), bound ? "" : error_text(item.computed, target), verdict);
 }
 
@@ -194,7 +194,7 @@ std::string deformation_line(const CaseResult& result) {
   std::vector<std::string> parts;
   for (const Deformation& d : result.deformations)
     parts.push_back(fmt::format(
-        "ν = {}: {} %, {:.2g}°", nu_text(d.poisson_ratio),
+        "{}: {} %, {:.2g}°", setting_text(result.experiment, d.poisson_ratio),
         d.principal_strain < 1e-5 ? fmt::format("{:.2g}", 100 * d.principal_strain) : percent(d.principal_strain),
         d.rotation_deg));
   return parts.empty() ? "" : fmt::format("{:<28} {}", name_of(result), fmt::join(parts, "; "));
@@ -239,7 +239,8 @@ std::vector<std::string> measured_lines(const CaseResult& result) {
   std::vector<std::string> lines;
   for (const Row& row : result.rows)
     if (cell_count(row.cells) == finest[row.model])
-      lines.push_back(fmt::format("{:<44} {:<34} {:>12} {}", at_nu(row.model, row.poisson_ratio), row.measure,
+      lines.push_back(fmt::format("{:<44} {:<34} {:>12} {}",
+                                  at_setting(result.experiment, row.model, row.poisson_ratio), row.measure,
                                   value_text(row.value), row.unit == "1" ? "" : row.unit));
   return lines;
 }
@@ -251,8 +252,9 @@ std::vector<std::string> motion_lines(const CaseResult& result) {
       const auto found = h.measured.find(name);
       return found != h.measured.end() && std::isfinite(found->second) ? std::optional(found->second) : std::nullopt;
     };
-    std::string line = fmt::format("{}: {} at ν = {}, {}: {}, steps of {:.3g} s", name_of(result), h.model,
-                                   nu_text(h.poisson_ratio), cells_words(h.cells), h.integrator, h.time_step);
+    std::string line =
+        fmt::format("{}: {} at {}, {}: {}, steps of {:.3g} s", name_of(result), h.model,
+                    setting_text(result.experiment, h.poisson_ratio), cells_words(h.cells), h.integrator, h.time_step);
     if (const auto period = measured("period"))
       line += fmt::format("; {} swings with a period of {:.5g} s and an amplitude of {:.4g} m", h.probe, *period,
                           measured("amplitude").value_or(0));
@@ -325,10 +327,10 @@ std::vector<std::string> verification_lines(const CaseResult& result) {
   std::vector<std::string> lines;
   if (has_models(result)) return lines;
   for (const Check& c : result.checks)
-    lines.push_back(verification_line(name_of(result), c, c.expected, c.reference_uncertainty.value_or(std::nan("")),
-                                      c.at_least, to_string(c.verdict)));
+    lines.push_back(verification_line(result, c, c.expected, c.reference_uncertainty.value_or(std::nan("")), c.at_least,
+                                      to_string(c.verdict)));
   for (const PublishedRow& p : result.published)
-    lines.push_back(verification_line(name_of(result), p, p.published, std::nan(""), false, "shown, not judged"));
+    lines.push_back(verification_line(result, p, p.published, std::nan(""), false, "shown, not judged"));
   return lines;
 }
 

@@ -63,14 +63,14 @@ std::string advice(const CaseResult& result, const Run& run) {
   return fmt::format("{} {} the whole load there", listed(names), names.size() == 1 ? "bears" : "bear");
 }
 
-std::string loss_words(const Run& run) {
-  return fmt::format("ν = {} at {} % of the load, {} % of strain", nu_text(run.poisson_ratio),
+std::string loss_words(const Experiment& e, const Run& run) {
+  return fmt::format("{} at {} % of the load, {} % of strain", setting_text(e, run.poisson_ratio),
                      percent(run.stability->load_reached), percent(run.stability->strain));
 }
 
 }  // namespace
 
-std::string limit_sentence(const std::string& case_name, const LatticeLimit& limit) {
+std::string limit_sentence(const Experiment& e, const LatticeLimit& limit) {
   std::vector<std::string> limits;
   const auto add = [&](const std::optional<double>& strain, const char* sides) {
     if (strain)
@@ -79,11 +79,11 @@ std::string limit_sentence(const std::string& case_name, const LatticeLimit& lim
   add(limit.free, "free");
   add(limit.held, "held");
   return fmt::format(
-      "{}: {} at ν = {} may lose its equilibrium: it is to be {}, more in places, and its lattice without end is "
+      "{}: {} at {} may lose its equilibrium: it is to be {}, more in places, and its lattice without end is "
       "stable "
       "to {} ({}); {}",
-      case_name, limit.model, nu_text(limit.poisson_ratio), change_words(limit.imposed), listed(limits), limit.wave,
-      limit.instead.empty() ? "apply less" : limit.instead + " is stable there");
+      e.name, limit.model, setting_text(e, limit.poisson_ratio), change_words(limit.imposed), listed(limits),
+      limit.wave, limit.instead.empty() ? "apply less" : limit.instead + " is stable there");
 }
 
 std::string stability_answer(const std::vector<CaseResult>& cases) {
@@ -124,9 +124,10 @@ std::vector<Warning> stability_warnings(const CaseResult& result, std::size_t ca
     if (!is_lost(run) && !(is_wrinkled(run) && run.ok)) continue;
     Group& group = is_lost(run) ? lost[{run.model, what_happens(*run.stability)}] : waves[{run.model, ""}];
     if (!group.first) group.first = &run;
-    group.where.push_back(is_lost(run) ? loss_words(run)
-                                       : fmt::format("ν = {} ({} % of the strain alternates)",
-                                                     nu_text(run.poisson_ratio), percent(run.stability->wrinkles)));
+    group.where.push_back(is_lost(run) ? loss_words(result.experiment, run)
+                                       : fmt::format("{} ({} % of the strain alternates)",
+                                                     setting_text(result.experiment, run.poisson_ratio),
+                                                     percent(run.stability->wrinkles)));
   }
   for (const auto& [key, group] : lost)
     warnings.push_back(

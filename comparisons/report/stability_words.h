@@ -11,7 +11,7 @@ namespace springproof {
 
 /// "bar: hybmss at ν = 0 may lose its equilibrium: it is to be lengthened by 40 %, and its lattice is stable to 17 %
 /// ..."
-std::string limit_sentence(const std::string& case_name, const LatticeLimit& limit);
+std::string limit_sentence(const Experiment& experiment, const LatticeLimit& limit);
 
 /// Of a case one warning for each model that lost its equilibrium, may have, or has wrinkles: at which nu and strain,
 /// what happened, and what to do.

@@ -28,6 +28,15 @@ std::string nu_text(double nu) { return minus(fmt::format("{:.6g}", nu)); }
 
 std::string at_nu(const std::string& name, double nu) { return fmt::format("{} at ν = {}", name, nu_text(nu)); }
 
+std::string setting_text(const Experiment& experiment, double setting) {
+  return fmt::format("{} = {}{}", experiment.listed_symbol(), nu_text(setting),
+                     experiment.listed.stiffness ? " Pa" : "");
+}
+
+std::string at_setting(const Experiment& experiment, const std::string& name, double setting) {
+  return fmt::format("{} at {}", name, setting_text(experiment, setting));
+}
+
 std::string cells_words(const Cells& cells) { return cells_text(cells, "×") + (is_tetrahedra(cells) ? "" : " cells"); }
 
 std::string listed(const std::vector<std::string>& items) {

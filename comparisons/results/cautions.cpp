@@ -16,7 +16,9 @@ void add_ride(const CaseResult& result, std::vector<std::string>& out) {
   std::vector<std::string> shares;
   for (const Deformation& d : result.deformations)
     if (d.strained_share < 1)
-      shares.push_back(fmt::format("{:.2g} % of it at nu = {:g}", 100 * d.strained_share, d.poisson_ratio));
+      shares.push_back(fmt::format("{:.2g} % of it at {} = {:g}", 100 * d.strained_share,
+                                   result.experiment.listed.region > 0 ? result.experiment.listed_symbol() : "nu",
+                                   d.poisson_ratio));
   if (!shares.empty())
     out.push_back(
         fmt::format("the supports carry the body along: its displacement is a rigid motion but for {}. Displacement "

@@ -35,12 +35,13 @@ bool printed_for(const PublishedRow& printed, const Row& row) {
   return same_run(printed, row) && printed.measure == row.measure;
 }
 
-std::string csv_line(const Row& r, const PublishedRow* printed) {
-  return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_text(r.case_name), csv_text(r.kinematics),
+std::string csv_line(const Row& r, const PublishedRow* printed, const std::string& listed) {
+  return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_text(r.case_name), csv_text(r.kinematics),
                      csv_text(r.model), csv_number(r.poisson_ratio), cells_text(r.cells), csv_text(r.measure),
                      csv_number(r.value), csv_text(r.unit), csv_number(r.reference),
                      csv_number(r.reference_uncertainty), csv_number(r.error), r.samples, csv_number(r.spread),
-                     printed ? csv_number(printed->published) : "", printed ? csv_text(printed->where) : "");
+                     printed ? csv_number(printed->published) : "", printed ? csv_text(printed->where) : "",
+                     csv_text(listed));
 }
 
 }  // namespace
@@ -48,13 +49,14 @@ std::string csv_line(const Row& r, const PublishedRow* printed) {
 std::string to_csv(const std::vector<CaseResult>& results) {
   std::string out =
       "case,kinematics,model,poisson_ratio,cells,measure,value,unit,reference,reference_uncertainty,error,samples,"
-      "spread,published,published_where\n";
+      "spread,published,published_where,listed\n";
   for (const CaseResult& result : results) {
     const std::vector<PublishedRow> printed = printed_values(result);
+    const std::string listed = result.experiment.listed_words();
     for (const Row& row : result.rows) {
       const auto found =
           std::find_if(printed.begin(), printed.end(), [&](const PublishedRow& p) { return printed_for(p, row); });
-      out += csv_line(row, found == printed.end() ? nullptr : &*found);
+      out += csv_line(row, found == printed.end() ? nullptr : &*found, listed);
     }
     for (const PublishedRow& p : printed) {
       const bool has_row =
@@ -62,7 +64,7 @@ std::string to_csv(const std::vector<CaseResult>& results) {
       const double ours = p.computed.value_or(std::nan(""));
       if (!has_row)
         out += csv_line({p, result.experiment.name, result.experiment.kinematics, p.measure, ours, p.unit, {}, {}, {}},
-                        &p);
+                        &p, listed);
     }
   }
   return out;

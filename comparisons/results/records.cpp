@@ -47,8 +47,7 @@ Json list(const std::vector<T>& items) {
 
 Json json_of(const CaseResult& result) {
   const Experiment& e = result.experiment;
-  Json poisson_ratios = Json::array(), loads = Json::array();
-  for (const auto& m : e.materials) poisson_ratios.push_back(m.poisson_ratio);
+  Json loads = Json::array();
   for (std::size_t i = 0; i + e.weights < e.loads.size(); ++i)
     loads.push_back(describe(e.loads[i], e.model_kinematics(), e.units));
   for (const AttachedMass& mass : e.masses) loads.push_back(describe(mass, e.units));
@@ -62,7 +61,11 @@ Json json_of(const CaseResult& result) {
       {"body",
        {{"geo", e.body.geo}, {"size", vector(result.size)}, {"cells", result.cells}, {"voxels", e.body.is_voxels()}}},
       {"materials", list(e.materials)},
-      {"poisson_ratios", poisson_ratios},
+      {"poisson_ratios", e.settings()},
+      {"listed",
+       {{"part", e.listed.region > 0 ? e.regions[e.listed.region - 1].name : ""},
+        {"symbol", e.listed_symbol()},
+        {"words", e.listed_words()}}},
       {"loads", loads},
       {"models", list(e.models)},
       {"elements", e.elements},

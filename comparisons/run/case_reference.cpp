@@ -81,7 +81,7 @@ ReferenceRecord field_record(const PartRun& run, const Lattice& lattice, const s
                              const Reference& reference) {
   const ElementGrids& first = run.grids.elements.front();
   const ReferenceField& f = reference.field;
-  ReferenceRecord record{.poisson_ratio = run.material.poisson_ratio,
+  ReferenceRecord record{.poisson_ratio = run.setting(),
                          .measure = "displacement_error",
                          .unit = "1",
                          .cells = {},
@@ -125,7 +125,7 @@ void measure_deformation(PartRun& run) {
   if (!run.reference[finest]) return;
   const NodalVectors& u = run.reference[finest]->field.displacement;
   const DeformationSize size = deformation_size(run.mesh(finest), u, run.experiment().model_kinematics());
-  Deformation record{.poisson_ratio = run.material.poisson_ratio,
+  Deformation record{.poisson_ratio = run.setting(),
                      .principal_strain = size.principal_strain,
                      .rotation_deg = size.rotation * 180 / std::numbers::pi,
                      .strained_share = run.reference[finest]->scale.share,

@@ -212,9 +212,10 @@ void add_fem(PartRun& run, std::size_t lattice) {
 
 }  // namespace
 
-Part run_part(const PreparedCase& prepared, std::size_t material, const VtuOutput& vtu, const RunKeeper& keeper) {
+Part run_part(const PreparedCase& whole, std::size_t setting, const VtuOutput& vtu, const RunKeeper& keeper) {
+  const PreparedCase prepared = at_setting(whole, setting);
   PartRun run{.prepared = prepared,
-              .material = prepared.experiment.materials[material],
+              .material = prepared.experiment.body_material(setting),
               .vtu = vtu,
               .keeper = keeper,
               .part = {},
@@ -225,7 +226,10 @@ Part run_part(const PreparedCase& prepared, std::size_t material, const VtuOutpu
               .in_time = {}};
   if (!vtu.folder.empty()) std::filesystem::create_directories(vtu.folder);
   for (const LatticeLimit& limit : prepared.limits)
-    if (same_poisson_ratio(limit.poisson_ratio, run.material.poisson_ratio)) run.part.limits.push_back(limit);
+    if (same_poisson_ratio(limit.poisson_ratio, run.material.poisson_ratio)) {
+      run.part.limits.push_back(limit);
+      run.part.limits.back().poisson_ratio = run.setting();
+    }
   const bool dries = prepared.experiment.fracture.has_value();
   const auto for_each_model = [&](std::size_t lattice, const auto& act) {
     if (!small_enough(prepared.experiment, run.mesh(lattice))) return;

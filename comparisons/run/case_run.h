@@ -1,4 +1,4 @@
-// Runs one case: every model and the reference, at one Poisson's ratio, measured by the same code.
+// Runs one case: every model and the reference, at one of its settings, measured by the same code.
 #pragma once
 
 #include "comparisons/prepare/prepared_case.h"
@@ -8,9 +8,9 @@
 
 namespace springproof {
 
-/// Runs everything for experiment.materials[material]; writes one VTU per run.
+/// Runs everything for one of experiment.settings(); writes one VTU per run.
 /// A solver that finds no result leaves a Run with ok = false and no rows.  Where its runs are kept the models run
 /// first, then the finite elements, the coarsest first, and what needs both is computed from what is kept.
-Part run_part(const PreparedCase& prepared, std::size_t material, const VtuOutput& vtu, const RunKeeper& keeper = {});
+Part run_part(const PreparedCase& prepared, std::size_t setting, const VtuOutput& vtu, const RunKeeper& keeper = {});
 
 }  // namespace springproof

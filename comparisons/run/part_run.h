@@ -1,4 +1,4 @@
-// One case at one material, while it is being run.
+// One case at one of its settings, while it is being run.
 #pragma once
 
 #include <map>
@@ -41,7 +41,8 @@ struct PartRun {
 
   const Experiment& experiment() const { return prepared.experiment; }
   const Mesh& mesh(std::size_t lattice) const { return *prepared.lattices[lattice].mesh; }
-  RunKey key(const std::string& model, const Cells& cells) const { return {model, material.poisson_ratio, cells}; }
+  double setting() const { return experiment().setting_of(material); }
+  RunKey key(const std::string& model, const Cells& cells) const { return {model, setting(), cells}; }
   VtuNotes notes(const RunKey& key) const {
     return vtu_notes(experiment().name, key, material.youngs_modulus, vtu.single);
   }

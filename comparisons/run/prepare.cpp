@@ -1,6 +1,7 @@
 #include "comparisons/run/prepare.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -17,6 +18,7 @@
 #include "comparisons/prepare/voxel_body.h"
 #include "comparisons/reference/reference_grids.h"
 #include "comparisons/results/records.h"
+#include "comparisons/run/own_models.h"
 #include "meshes/locate/locate.h"
 #include "meshes/mesher/mesher.h"
 #include "meshes/patches/select_patches.h"
@@ -134,49 +136,6 @@ void choose_curve(const Experiment& e, ModelParameters& p) {
     if (e.kinematics == name_of(curve)) p.curve = curve;
 }
 
-/// Whether they relax alike, to the digits of a file.
-bool same(const RelaxingCells& a, const RelaxingCells& b) {
-  const auto equal = [](double x, double y) { return std::abs(x - y) <= 1e-9 * std::max(std::abs(x), std::abs(y)); };
-  const auto &p = a.relaxation.branches, &q = b.relaxation.branches;
-  const HourglassStiffness &h = a.cells.hourglass, &k = b.cells.hourglass;
-  return std::equal(p.begin(), p.end(), q.begin(), q.end(),
-                    [&](const auto& x, const auto& y) { return equal(x.share, y.share) && equal(x.time, y.time); }) &&
-         equal(a.cells.shear_modulus, b.cells.shear_modulus) && equal(h.bending, k.bending) &&
-         equal(h.coupling, k.coupling) && equal(h.torsion, k.torsion) && equal(h.twist, k.twist) &&
-         equal(h.warping, k.warping);
-}
-
-/// @throws InputError at a springs file that relaxes otherwise than the case's material.
-void check_relaxing(const PreparedCase& prepared, std::size_t m, const IsotropicMaterial& material) {
-  if (!prepared.models[m].springs) return;
-  const SpringsFile& file = *prepared.models[m].springs;
-  const Experiment& e = prepared.experiment;
-  const auto refuse = [&](const std::string& why) {
-    throw InputError(e.models[m].where, fmt::format("compare.models: {}: {}", e.models[m].label, why));
-  };
-  if (file.relaxing.acts() && !e.relaxation.acts())
-    refuse("/relaxation: the springs of the file relax (needed: its branches as [material.relaxation])");
-  if (!file.relaxing.acts() && e.relaxation.acts())
-    refuse("the springs of the file do not relax (allowed: a file with branches; or no [material.relaxation])");
-  if (std::isfinite(e.loaded_for))
-    refuse("the springs of a file have their long-time moduli at rest (allowed: no equilibrium_after_s)");
-  if (!same(file.relaxing, RelaxingCells::of(file.model, material, e.relaxation)))
-    refuse("/relaxation: is not that of the case's [material.relaxation] (needed: the same branches and constants)");
-}
-
-/// @throws InputError at a springs file that stands for another material than the case's.
-void check_own_models(const PreparedCase& prepared) {
-  const Experiment& e = prepared.experiment;
-  for (std::size_t m = 0; m < prepared.models.size(); ++m)
-    for (const IsotropicMaterial& material : e.materials) try {
-        require_material(prepared.models[m], material);
-      } catch (const InputError& error) {
-        throw InputError(e.models[m].where, fmt::format("compare.models: {}", error.what()));
-      }
-  for (std::size_t m = 0; m < prepared.models.size(); ++m)
-    for (const IsotropicMaterial& material : e.materials) check_relaxing(prepared, m, material);
-}
-
 /// False for a case of motions alone that start from rest: bodies may fly.
 bool needs_supports(const Experiment& e) { return !e.dynamics || e.dynamics->equilibrium || e.dynamics->released; }
 
@@ -188,8 +147,11 @@ void try_model(const PreparedCase& prepared, const Lattice& lattice, std::size_t
   const Mesh& mesh = *lattice.mesh;
   const auto [model, embedding] = build_chosen(prepared, lattice, number, experiment.materials.front());
   if (experiment.models[number].in_motion)
-    for (const IsotropicMaterial& material : experiment.materials)  // refuses unsafe ones
-      steps_of(experiment, build_chosen(prepared, lattice, number, material).model, material);
+    for (std::size_t s = 0; s < experiment.settings().size(); ++s) {  // refuses unsafe ones
+      const PreparedCase at = at_setting(prepared, s);
+      const IsotropicMaterial& material = at.experiment.body_material(s);
+      steps_of(at.experiment, build_chosen(at, lattice, number, material).model, material);
+    }
   if (parameters.row.topology == Topology::cells && !*parameters.cut) return;
   const BoundaryConditions bc =
       transfer(prepared.loads, mesh, embedding, model.network, 1000, experiment.model_kinematics());
@@ -290,8 +252,9 @@ void check_region_models(const PreparedCase& prepared) {
                                             [](const auto& m) { return m == "region" || m == "interface"; });
   for (std::size_t m = 0; m < prepared.models.size(); ++m) {
     const ModelParameters& p = prepared.models[m];
-    const bool can = has_cut_cells(p.row) && !p.springs && e.body.accuracies.empty();
-    if (measures_regions && can && !*p.cut && !p.has(Extension::averaging))
+    const bool of_file = p.springs && !p.springs->regions.empty();  // whose regions are the case's: check_own_models
+    const bool can = of_file || (has_cut_cells(p.row) && !p.springs && e.body.accuracies.empty());
+    if (measures_regions && can && !of_file && !*p.cut && !p.has(Extension::averaging))
       throw InputError(e.models[m].where,
                        fmt::format("compare.models: {}: the measures region and interface are of averaged springs "
                                    "(allowed: hybmss_avg, cut cells, or other measures)",
@@ -300,6 +263,11 @@ void check_region_models(const PreparedCase& prepared) {
       throw InputError(e.models[m].where,
                        fmt::format("compare.models: {}: coarsened = true: a measured cell is of no region (allowed: "
                                    "without the measures region and interface)",
+                                   e.models[m].label));
+    if (*p.coarsened && e.listed.region > 0)
+      throw InputError(e.models[m].where,
+                       fmt::format("compare.models: {}: coarsened = true: cells are measured for one material of each "
+                                   "region (allowed: a list in [material])",
                                    e.models[m].label));
     if (*p.coarsened && e.model_kinematics() == Kinematics::finite)  // at rest or in motion
       throw InputError(
@@ -311,7 +279,7 @@ void check_region_models(const PreparedCase& prepared) {
     throw InputError(
         e.models[m].where,
         fmt::format("compare.models: {} is of one material in a body (allowed beside [[region]]: lattices of cells of "
-                    "one size without momentum dispersion, as hybmss_avg; or models = [])",
+                    "one size without momentum dispersion, as hybmss_avg; a springs file of such; or models = [])",
                     e.models[m].label));
   }
 }
@@ -366,6 +334,16 @@ void note_heavy_masses(PreparedCase& prepared) {
                                                 mass.name, mass.mass / body, body));
 }
 
+/// Where a message about a physical volume belongs, which the mesher has without the lines of the case.
+std::optional<SourceLocation> region_of_message(const Experiment& e, const std::string& message) {
+  if (message.find("physical volume") == std::string::npos) return {};
+  for (const MaterialRegion& r : e.regions)
+    if (const auto* volume = std::get_if<std::string>(&r.place);
+        volume && message.find("'" + *volume + "'") != std::string::npos)
+      return r.where;
+  return {};
+}
+
 /// Calls `prepare_it`; error messages name the case.
 template <class Prepare>
 PreparedCase naming(const Experiment& experiment, const Prepare& prepare_it) try {
@@ -374,6 +352,8 @@ PreparedCase naming(const Experiment& experiment, const Prepare& prepare_it) try
   throw;
 } catch (const InputError& e) {
   const std::string message = e.what(), file = experiment.file.string();
+  if (const auto where = region_of_message(experiment, message); where && !message.starts_with(file))
+    throw InputError(*where, "region.volume: " + message);
   throw InputError(message.starts_with(file) ? message : file + ": " + message);
 } catch (const std::runtime_error& e) {
   const std::string message = e.what(), file = experiment.file.string();

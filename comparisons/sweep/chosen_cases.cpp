@@ -1,6 +1,7 @@
 #include "comparisons/sweep/chosen_cases.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -11,13 +12,13 @@ Experiment only(const std::vector<double>& wanted, Experiment e) {
   const auto left_out = [&](double nu) {
     return std::none_of(wanted.begin(), wanted.end(), [&](double w) { return same_poisson_ratio(w, nu); });
   };
-  std::string has;
-  for (const IsotropicMaterial& m : e.materials) has += fmt::format("{}{}", has.empty() ? "" : ", ", m.poisson_ratio);
-  std::erase_if(e.materials, [&](const IsotropicMaterial& m) { return left_out(m.poisson_ratio); });
+  const std::vector<double> has = e.settings();
+  e.leave_out_settings(left_out);
   std::erase_if(e.expectations, [&](const Expectation& x) { return x.poisson_ratio && left_out(*x.poisson_ratio); });
   std::erase_if(e.published, [&](const PublishedValue& v) { return left_out(v.poisson_ratio); });
-  if (e.materials.empty())
-    throw InputError(fmt::format("{}: poisson_ratio: none of those wanted (allowed: {})", e.file.string(), has));
+  if (e.settings().empty())
+    throw InputError(fmt::format("{}: {}: none of those wanted (allowed: {})", e.file.string(), e.listed_words(),
+                                 fmt::join(has, ", ")));
   return e;
 }
 

@@ -7,7 +7,7 @@
 
 namespace springproof {
 
-/// Restricts a case to the requested Poisson's ratios, and to the expectations at these or at every one; none
+/// Restricts a case to the requested settings, and to the expectations at these or at every one; none
 /// requested: all of it.
 /// @throws InputError if it has none of them.
 Experiment only(const std::vector<double>& wanted, Experiment experiment);

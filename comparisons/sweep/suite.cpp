@@ -40,7 +40,7 @@ namespace fs = std::filesystem;
 /// One part of one case: the unit of work.
 struct Task {
   const PreparedCase* prepared;
-  std::size_t material;
+  std::size_t setting;
   fs::path file;  ///< where the finished part is kept
   VtuOutput vtu;
   std::string stamp;
@@ -77,12 +77,13 @@ Sweep planned(const std::vector<Experiment>& cases, const SuiteOptions& options)
   for (const Experiment& e : cases) {
     PlannedCase planned{fs::absolute(e.file).string(), e.text, case_name(e.file), key_of(e.file), {}};
     const std::string sum = input_checksum(e);
-    for (const IsotropicMaterial& material : e.materials) {
-      const std::string nu = fmt::format("nu{}", material.poisson_ratio);
-      planned.parts.push_back({material.poisson_ratio, fmt::format("{}-{}.cbor", planned.key, nu),
+    const std::vector<double> settings = e.settings();
+    for (std::size_t s = 0; s < settings.size(); ++s) {
+      const std::string nu = fmt::format("nu{}", settings[s]);
+      planned.parts.push_back({settings[s], fmt::format("{}-{}.cbor", planned.key, nu),
                                fmt::format("{} | {} | {} | {}{} | {} | {}", sweep.version, sweep.libraries, nu,
                                            options.vtu, options.vtu_single ? " single" : "", options.finer, sum)});
-      seconds.push_back(unmeshed_seconds(e, material));
+      seconds.push_back(unmeshed_seconds(e, e.body_material(s)));
     }
     sweep.cases.push_back(std::move(planned));
   }
@@ -103,8 +104,8 @@ int jobs_of(const SuiteOptions& options) {
 std::vector<std::vector<RunCost>> unmeshed(const std::vector<Experiment>& cases) {
   std::vector<std::vector<RunCost>> parts;
   for (const Experiment& e : cases)
-    for (const IsotropicMaterial& material : e.materials)
-      parts.push_back({{RunKind::springs, unmeshed_seconds(e, material)}});
+    for (std::size_t s = 0; s < e.settings().size(); ++s)
+      parts.push_back({{RunKind::springs, unmeshed_seconds(e, e.body_material(s))}});
   return parts;
 }
 
@@ -128,12 +129,13 @@ std::vector<Task> tasks_of(const Sweep& sweep, const std::vector<PreparedCase>& 
   std::vector<Task> tasks;
   for (const PreparedCase& p : prepared) {
     const PlannedCase& planned = case_of_key(sweep, key_of(p.experiment.file));
-    for (std::size_t m = 0; m < p.experiment.materials.size(); ++m)
+    const std::vector<double> settings = p.experiment.settings();
+    for (std::size_t s = 0; s < settings.size(); ++s)
       for (const PlannedPart& part : planned.parts)
-        if (same_poisson_ratio(part.poisson_ratio, p.experiment.materials[m].poisson_ratio) &&
+        if (same_poisson_ratio(part.poisson_ratio, settings[s]) &&
             (!options.shard || part.shard == options.shard->number))
           tasks.push_back({&p,
-                           m,
+                           s,
                            options.out / "parts" / part.file,
                            {options.vtu ? options.out / "vtu" / planned.key : fs::path(), options.vtu_single},
                            part.stamp,
@@ -145,7 +147,8 @@ std::vector<Task> tasks_of(const Sweep& sweep, const std::vector<PreparedCase>& 
 
 std::vector<std::vector<RunCost>> expected(const std::vector<Task>& tasks) {
   std::vector<std::vector<RunCost>> runs;
-  for (const Task& t : tasks) runs.push_back(expected_runs(*t.prepared, t.prepared->experiment.materials[t.material]));
+  for (const Task& t : tasks)
+    runs.push_back(expected_runs(*t.prepared, t.prepared->experiment.body_material(t.setting)));
   return runs;
 }
 
@@ -249,7 +252,7 @@ void run_tasks(std::vector<Task>& tasks, const SuiteOptions& options) {
         const bool goes_on = options.resume || options.shard;
         if (goes_on) kept = kept_part(task);
         if (!goes_on) keeper.forget();
-        task.part = kept ? std::move(*kept) : run_part(*task.prepared, task.material, task.vtu, keeper);
+        task.part = kept ? std::move(*kept) : run_part(*task.prepared, task.setting, task.vtu, keeper);
         if (children_interrupted()) return;  // its FEM program may have been stopped by the same signal
         if (!kept) save_part(task.file, task.stamp, task.part);
         keeper.forget();
@@ -283,7 +286,7 @@ void check_names(const std::vector<fs::path>& cases) {
 /// Says which models may lose their equilibrium, before anything is run.
 void warn_of_limits(const std::vector<PreparedCase>& prepared) {
   for (const PreparedCase& p : prepared)
-    for (const LatticeLimit& limit : p.limits) to_stderr("warning: {}\n", limit_sentence(p.experiment.name, limit));
+    for (const LatticeLimit& limit : p.limits) to_stderr("warning: {}\n", limit_sentence(p.experiment, limit));
 }
 
 /// Runs the tasks; false if interrupted, which is said.

@@ -118,7 +118,9 @@ void save_meshed(const fs::path& folder, const std::string& key, const CaseResul
                       {"notes", meshed.notes},
                       {"own_poisson_ratios", meshed.own_poisson_ratios},
                       {"laws", meshed.laws},
-                      {"made_of", meshed.made_of}}));
+                      {"made_of", meshed.made_of},
+                      {"regions", meshed.regions},
+                      {"section", meshed.section_svg}}));
 }
 
 bool load_meshed(const fs::path& folder, const std::string& key, CaseResult& result) try {
@@ -129,6 +131,8 @@ bool load_meshed(const fs::path& folder, const std::string& key, CaseResult& res
   meshed.at("own_poisson_ratios").get_to(result.own_poisson_ratios);
   meshed.at("laws").get_to(result.laws);
   meshed.at("made_of").get_to(result.made_of);
+  meshed.at("regions").get_to(result.regions);
+  meshed.at("section").get_to(result.section_svg);
   return true;
 } catch (const std::exception&) {  // not there, or damaged
   return false;

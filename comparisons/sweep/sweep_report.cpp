@@ -60,7 +60,8 @@ CaseResult collect(const fs::path& folder, const Sweep& sweep, const PlannedCase
   result.experiment =
       finer(sweep.finer, only(present.empty() ? ratios : present, parse_experiment(planned.text, planned.file)));
   if (!absent.empty()) {
-    const std::string note = fmt::format("Not computed: Poisson's ratio {}.", fmt::join(absent, ", "));
+    const std::string note =
+        fmt::format("Not computed: {} {}.", result.experiment.listed_words(), fmt::join(absent, ", "));
     result.notes.push_back(note);
     result.experiment.what += (result.experiment.what.empty() ? "" : " ") + note;
   }

@@ -18,8 +18,10 @@
 namespace springproof {
 namespace {
 
-constexpr double on_border = 1e-9;  // of the body's size: what is so near to a border is on it
-constexpr double edges_across = 4;  // of the finest mesh, across a region
+constexpr double on_border = 1e-9;         // of the body's size: what is so near to a border is on it
+constexpr double edges_across = 4;         // of the finest mesh, across a region, but for thin ones:
+constexpr double most_in_region = 40000;   // tetrahedra of the finest mesh that shortened edges make of a region
+constexpr double tetrahedra_in_cube = 65;  // whose edge is the longest of theirs, when edges are halved until they fit
 
 /// Volumes of the materials of a mesh.
 std::vector<double> volumes_by_material(const Mesh& mesh, std::size_t regions) {
@@ -89,14 +91,31 @@ void give_volume(const Border& sphere, std::uint8_t number, double slack, CutMes
   cut.move(nodes, to);
 }
 
+/// Of a region in the finest mesh [m].  A thin one may have a single quadratic element across it, by which a sheet
+/// bends right.
+/// @param volume of what lies in the body [m^3]
+double longest_edge(const SolidShape& shape, double volume) {
+  return std::max(shape.across / edges_across, std::cbrt(tetrahedra_in_cube * volume / most_in_region));
+}
+
+/// Of what lies in the box around a body, if that is known.
+double volume_within(const RegionPlace& place, const SolidShape& shape, const Mesh& mesh) {
+  const auto* box = std::get_if<PatchRule::Box>(&place);
+  if (!box) return shape.volume;
+  const Vec3 low = box->low.cwiseMax(mesh.nodes.colwise().minCoeff().transpose()),
+             high = box->high.cwiseMin(mesh.nodes.colwise().maxCoeff().transpose());
+  return (high - low).cwiseMax(0).prod();
+}
+
 /// Of tetrahedra: the cells of one region, by its number, painted over those of earlier ones.
+/// @param longest edge that one may have in the region before it is cut [m]
 /// @return its volume, that in later regions too [m^3]
-double paint(const SolidShape& shape, std::uint8_t number, double coarseness, Mesh& mesh) {
+double paint(const SolidShape& shape, std::uint8_t number, double longest, Mesh& mesh) {
   std::vector<std::string> patches;
   for (const Patch& p : mesh.patches) patches.push_back(p.name);
   CutMesh cut(mesh);
   const double slack = on_border * extent_of(mesh);
-  const std::vector<std::size_t> held = cut_along_borders(shape, shape.across / edges_across * coarseness, slack, cut);
+  const std::vector<std::size_t> held = cut_along_borders(shape, longest, slack, cut);
   std::vector<std::uint8_t> materials = cut.materials();
   for (const std::size_t c : held) materials[c] = std::max(materials[c], number);
   cut.set_materials(std::move(materials));
@@ -144,7 +163,10 @@ std::optional<SolidShape> shape_in(const MaterialRegion& region) try {
 /// @throws InputError if its border runs through hexahedra
 double mark_one(const MaterialRegion& region, std::uint8_t number, double coarseness, Mesh& mesh) {
   const std::optional<SolidShape> shape = shape_in(region);
-  if (shape && !mesh.tetrahedra.empty()) return paint(*shape, number, coarseness, mesh);
+  if (shape && !mesh.tetrahedra.empty()) {
+    const double longest = longest_edge(*shape, volume_within(region.place, *shape, mesh));
+    return paint(*shape, number, coarseness * longest, mesh);
+  }
   if (const std::size_t cut = shape ? paint_whole(*shape, number, mesh) : 0)
     throw InputError(
         region.where,
@@ -208,7 +230,8 @@ std::vector<std::string> mark_regions(const std::vector<MaterialRegion>& regions
 
 void mark_enclosed(const Surface& surface, std::uint8_t number, double coarseness, Mesh& mesh) {
   mesh.materials.resize(mesh.tetrahedra.size(), 0);
-  paint(shape_of(surface), number, coarseness, mesh);
+  const SolidShape shape = shape_of(surface);
+  paint(shape, number, coarseness * longest_edge(shape, shape.volume), mesh);
 }
 
 bool end_at_faces_of(const Mesh& mesh, const std::vector<MaterialRegion>& regions) {

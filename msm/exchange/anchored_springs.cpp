@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <functional>
+#include <numeric>
+
 #include "meshes/locate/locate.h"
 #include "problem/system/input_error.h"
 
@@ -28,16 +32,25 @@ void add_anchors(const SpringsFile& file, const std::set<std::string>& held, Net
   for (const Anchor& a : network.anchors) network.X.row(a.node) = anchored_point(a, file.model.network.X).transpose();
 }
 
+/// Cells by what the body fills of them, the fullest first: of several in one cube that one has its middle.
+std::vector<std::size_t> fullest_first(const CellSet& cells) {
+  std::vector<std::size_t> order(cells.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::stable_sort(order, std::greater(), [&](std::size_t c) { return cells.part(c).fraction; });
+  return order;
+}
+
 void embed_mesh(const Mesh& mesh, const Network& network, Embedding& embedding) {
+  const std::vector<std::size_t> order = fullest_first(network.cells);
   Mesh cells;
   cells.nodes = network.X;
-  cells.hexahedra = network.cells.corners;
+  for (const std::size_t c : order) cells.hexahedra.push_back(network.cells.corners[c]);
   const Locator locator(cells);
   std::vector<Eigen::Triplet<double>> entries;
   std::vector<char> done(static_cast<std::size_t>(mesh.nodes.rows()), 0);
   for (const Hexahedron& cube : mesh.hexahedra) {
     const Vec3 middle = (mesh.nodes.row(cube[0]) + mesh.nodes.row(cube[6])).transpose() / 2;
-    const auto of_cube = static_cast<std::size_t>(locator(middle).cell);
+    const std::size_t of_cube = order[locator(middle).cell];
     for (const int n : cube) {
       if (done[n]) continue;
       done[n] = 1;
@@ -47,7 +60,7 @@ void embed_mesh(const Mesh& mesh, const Network& network, Embedding& embedding) 
       };
       std::size_t c = of_cube;  // of one size, cells continue to the nodes of their cube
       if (network.cells.kind() == CellKind::sizes && (position(c).array() - 0.5).abs().maxCoeff() > 0.5 + 1e-9)
-        c = static_cast<std::size_t>(locator(at).cell);
+        c = order[locator(at).cell];
       const Hexahedron& cell = network.cells.corners[c];
       const Vec3 xi = position(c);
       for (int k = 0; k < 8; ++k) {

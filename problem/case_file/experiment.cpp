@@ -198,6 +198,7 @@ Experiment read_tables(const TomlTable& document, Experiment experiment) {
   experiment.patches = read_patch_rules(document);
   experiment.materials = read_materials(document.at("material"));
   experiment.regions = read_regions(document, experiment);
+  experiment.listed = read_listed(document, experiment);
   for (const TomlValue& value : document.tables("load"))
     for (const Load& load : read_load(value)) {
       experiment.loads.push_back(load);
@@ -267,6 +268,39 @@ std::string to_string(Source source) {
 IsotropicMaterial Experiment::at_rest(const IsotropicMaterial& material) const {
   const double creep = relaxation.creep_after(loaded_for);
   return creep == 1 ? material : with_shear(material, 1 / creep);
+}
+
+std::vector<double> Experiment::settings() const {
+  std::vector<double> values;
+  for (const IsotropicMaterial& m : listed.region > 0 ? listed.materials : materials)
+    values.push_back(listed_modulus(m));
+  return values;
+}
+
+double Experiment::setting_of(const IsotropicMaterial& body) const {
+  return listed_modulus(listed.region > 0 ? regions[listed.region - 1].material : body);
+}
+
+Experiment Experiment::at(std::size_t setting) const {
+  Experiment one = *this;
+  if (listed.region == 0) return one;
+  one.regions[listed.region - 1].material = listed.materials[setting];
+  one.listed.materials = {listed.materials[setting]};
+  return one;
+}
+
+const IsotropicMaterial& Experiment::body_material(std::size_t setting) const {
+  return materials[listed.region > 0 ? 0 : setting];
+}
+
+std::string Experiment::listed_symbol() const {
+  if (listed.region == 0) return "ν";
+  return (listed.stiffness ? "E of " : "ν of ") + regions[listed.region - 1].name;
+}
+
+std::string Experiment::listed_words() const {
+  if (listed.region == 0) return "Poisson's ratio";
+  return (listed.stiffness ? "Young's modulus of " : "Poisson's ratio of ") + regions[listed.region - 1].name;
 }
 
 Experiment parse_experiment(const std::string& text, const std::filesystem::path& file) {

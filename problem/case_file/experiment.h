@@ -122,6 +122,13 @@ struct PublishedValue {
 /// Follows the label of a model of cut cells in the name of its limit from two lattices.
 inline constexpr const char* extrapolated_suffix = " extrapolated";
 
+/// The part of the body whose moduli are a list, by which the results of a case are told apart.
+struct ListedModuli {
+  std::size_t region = 0;                    ///< its number; 0: what is in no region, by its Poisson's ratio
+  bool stiffness = false;                    ///< by Young's modulus [Pa]; false: by Poisson's ratio
+  std::vector<IsotropicMaterial> materials;  ///< of the region, in the file's order
+};
+
 /// A case: one body, its loads, the materials and models it is run with, and the expected results.
 struct Experiment {
   std::string name;    ///< the file's stem
@@ -139,6 +146,7 @@ struct Experiment {
   SourceLocation relaxation_where;           ///< of [material.relaxation]
   double loaded_for = std::numeric_limits<double>::infinity();  ///< of equilibria [s]
   std::vector<MaterialRegion> regions;                          ///< parts of the body that are of other materials
+  ListedModuli listed;                                          ///< of a region, where its material is a list
   std::vector<Load> loads;
   std::vector<AttachedMass> masses;            ///< beside the body's own
   std::vector<SourceLocation> mass_locations;  ///< of each
@@ -170,6 +178,27 @@ struct Experiment {
 
   /// @return the solid of equilibria: a material of the case, relaxed for `loaded_for`
   IsotropicMaterial at_rest(const IsotropicMaterial& material) const;
+  /// Values of the listed modulus, each once, in the file's order; records and files of results name it poisson_ratio.
+  std::vector<double> settings() const;
+  /// Its value for a material of what is in no region, in a case with one material of each region.
+  double setting_of(const IsotropicMaterial& body) const;
+  /// The case with one material of each region: the list's of this number, counted as settings() are.
+  Experiment at(std::size_t setting) const;
+  /// The material of what is in no region at a setting.
+  const IsotropicMaterial& body_material(std::size_t setting) const;
+  /// Keeps the settings that are not `unwanted`.
+  template <class Unwanted>
+  void leave_out_settings(Unwanted unwanted) {
+    std::erase_if(listed.region > 0 ? listed.materials : materials,
+                  [&](const IsotropicMaterial& m) { return unwanted(listed_modulus(m)); });
+  }
+  double listed_modulus(const IsotropicMaterial& m) const {
+    return listed.stiffness ? m.youngs_modulus : m.poisson_ratio;
+  }
+  /// "ν", "ν of tumour", "E of tumour".
+  std::string listed_symbol() const;
+  /// "Poisson's ratio", "Poisson's ratio of tumour", "Young's modulus of tumour".
+  std::string listed_words() const;
   Kinematics model_kinematics() const { return kinematics == "linear" ? Kinematics::linear : Kinematics::finite; }
 };
 
@@ -192,6 +221,10 @@ std::optional<KelvinSolution> kelvin_of(const Experiment& experiment);
 /// @param what names one of several things that know one material: "advise"
 /// @throws InputError at the first [[region]], if the case has any.
 void require_one_material(const Experiment& experiment, const std::string& what);
+
+/// For what takes a case at one material of each region.
+/// @throws InputError at a region whose material is a list of several.
+void require_one_listed(const Experiment& experiment);
 
 /// @throws InputError at the first load on a patch that is not among `patches`, those of the body.
 void check_patches(const Experiment& experiment, const std::vector<std::string>& patches);

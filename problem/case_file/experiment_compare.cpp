@@ -293,11 +293,9 @@ void refuse_label(const TomlValue& item, const std::string& label, const std::ve
 
 double read_poisson_ratio(const TomlValue& value, const Experiment& experiment) {
   const double nu = as_number(value);
-  std::vector<double> known;
-  for (const IsotropicMaterial& m : experiment.materials) {
-    if (std::abs(m.poisson_ratio - nu) <= 1e-9) return m.poisson_ratio;
-    known.push_back(m.poisson_ratio);
-  }
+  const std::vector<double> known = experiment.settings();
+  for (const double setting : known)
+    if (same_poisson_ratio(setting, nu)) return setting;
   refuse(value, fmt::format("{} is not in the case", nu), fmt::format("{}", fmt::join(known, ", ")));
 }
 

@@ -26,11 +26,11 @@ ModelChoice read_file(const TomlTable& of, ModelChoice choice, const Experiment&
   choice.file = std::filesystem::path(value.file).parent_path() / as_text(of.at("file"));
   if (const auto nu = of.find("poisson_ratio"))
     choice.options["poisson_ratio"] = read_poisson_ratio(*nu, experiment);
-  else if (experiment.materials.size() == 1)
-    choice.options["poisson_ratio"] = experiment.materials.front().poisson_ratio;
+  else if (const std::vector<double> settings = experiment.settings(); settings.size() == 1)
+    choice.options["poisson_ratio"] = settings.front();
   else
     refuse({value.node, value.key + ".poisson_ratio", value.file},
-           fmt::format("is missing, and the case has {}", experiment.materials.size()),
+           fmt::format("is missing, and the case has {}", settings.size()),
            "the Poisson's ratio of the solid whose displacements these are");
   if (const auto reactions = of.find("reaction_N")) read_reactions(*reactions, choice);
   return choice;

@@ -171,7 +171,7 @@ void check_fit(const TomlValue& first, const Experiment& e) {
 
 void read_measured_set(const TomlValue& value, Experiment& e) {
   const TomlTable table(value, keys_of("measured"));
-  if (e.models.empty() || e.materials.size() != 1)
+  if (e.models.empty() || e.settings().size() != 1)
     refuse(value, e.models.empty() ? "has no model beside it" : "is of one body, and the case has several materials",
            "models in [compare], and one Poisson's ratio");
   const std::string source = as_text(table.at("source")), licence = as_text(table.at("licence"));

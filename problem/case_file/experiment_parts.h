@@ -26,6 +26,10 @@ std::vector<IsotropicMaterial> read_moduli(const TomlTable& table, double densit
 /// The [[region]] tables, in order; the materials must have been read.
 std::vector<MaterialRegion> read_regions(const TomlTable& document, const Experiment& experiment);
 
+/// The one list among their moduli and those of [material].
+/// @throws InputError at a second list, naming both.
+ListedModuli read_listed(const TomlTable& document, const Experiment& experiment);
+
 /// @throws InputError at what is not computed of a body with regions; all else must have been read.
 void check_regions(const Experiment& experiment);
 /// @throws InputError at [material.relaxation] beside an exact solution

@@ -44,11 +44,32 @@ RegionPlace read_place(const TomlTable& table, const Experiment& e) {
 
 MaterialRegion read_region(const TomlValue& value, const Experiment& e) {
   const TomlTable table(value, keys_of("region"));
-  for (const ModulusName& modulus : modulus_names)
-    if (const auto given = table.find(modulus.key); given && given->node->is_array())
-      refuse(*given, "is a list", "one number; lists are for [material]");
   return {as_text(table.at("name")), read_moduli(table, e.materials.front().density).front(), location_of(value),
           read_place(table, e)};
+}
+
+/// The first modulus of a table that is a list of several.
+std::optional<TomlValue> list_in(const TomlTable& table) {
+  for (const ModulusName& modulus : modulus_names)
+    if (const auto given = table.find(modulus.key); given && one_or_several(*given).size() > 1) return given;
+  return {};
+}
+
+/// Of which modulus a region's materials are a list: Poisson's ratio, or where it is the same of all, Young's modulus.
+ListedModuli told_apart(std::size_t region, std::vector<IsotropicMaterial> materials, const TomlValue& list) {
+  const double nu = materials.front().poisson_ratio;
+  const bool stiffness =
+      std::ranges::all_of(materials, [&](const auto& m) { return same_poisson_ratio(m.poisson_ratio, nu); });
+  ListedModuli listed{region, stiffness, std::move(materials)};
+  std::vector<double> known;
+  for (const IsotropicMaterial& m : listed.materials) {
+    const double value = stiffness ? m.youngs_modulus : m.poisson_ratio;
+    if (std::ranges::find(known, value) != known.end())
+      refuse(list, fmt::format("gives the {} {} twice", stiffness ? "Young's modulus" : "Poisson's ratio", value),
+             "each once");
+    known.push_back(value);
+  }
+  return listed;
 }
 
 /// What of a case is computed of one material alone, and what it may be instead; empty: nothing.
@@ -124,9 +145,35 @@ std::vector<MaterialRegion> read_regions(const TomlTable& document, const Experi
   return regions;
 }
 
+ListedModuli read_listed(const TomlTable& document, const Experiment& e) {
+  ListedModuli listed;
+  std::optional<TomlValue> first = list_in(TomlTable(document.at("material"), keys_of("material")));
+  const std::vector<TomlValue> tables = document.tables("region");
+  for (std::size_t r = 0; r < tables.size(); ++r) {
+    const TomlTable table(tables[r], keys_of("region"));
+    const std::optional<TomlValue> list = list_in(table);
+    if (!list) continue;
+    if (first)
+      refuse(*list,
+             fmt::format("of '{}' is a list, and {} in line {} is one", e.regions[r].name, first->key,
+                         location_of(*first).line),
+             "a list in one place of the file");
+    first = list;
+    listed = told_apart(r + 1, read_moduli(table, e.materials.front().density), *list);
+  }
+  return listed;
+}
+
 void check_regions(const Experiment& e) {
   if (e.regions.empty()) return;
   if (const auto refused = of_one_material(e)) throw InputError(refused->second, refused->first);
+}
+
+void require_one_listed(const Experiment& e) {
+  if (e.listed.materials.size() < 2) return;
+  throw InputError(e.regions[e.listed.region - 1].where,
+                   fmt::format("region: {} is a list (allowed here: one number, or --poisson-ratio with one of {})",
+                               e.listed_words(), fmt::join(e.settings(), ", ")));
 }
 
 void require_one_material(const Experiment& e, const std::string& what) {

@@ -41,8 +41,8 @@ std::string folder_of(const std::string& name) { return name.substr(0, name.find
 /// About how long a comparison takes, two parts at once: "40 s".
 std::string time_of(const Experiment& e) {
   double sum = 0, longest = 0;
-  for (const IsotropicMaterial& material : e.materials) {
-    const double part = unmeshed_seconds(e, material);
+  for (std::size_t s = 0; s < e.settings().size(); ++s) {
+    const double part = unmeshed_seconds(e, e.body_material(s));
     sum += part;
     longest = std::max(longest, part);
   }

@@ -78,9 +78,9 @@ int export_calculix(const ExportRequest& request) {
   if (!request.model.empty() || request.voxels || request.moduli.youngs_modulus || !request.size.empty() ||
       !request.hold.empty() || !request.load.empty())
     throw InputError("--to calculix: a deck has the case's elements and material (allowed: --poisson-ratio, --cells)");
-  const Experiment experiment = read_case(request);
+  const Experiment experiment = at_wanted(read_case(request), request.moduli.poisson_ratio);
   calculix::require_counterpart(experiment);
-  const IsotropicMaterial material = material_of(experiment, request.moduli.poisson_ratio);
+  const IsotropicMaterial& material = experiment.materials.front();
   const std::string file = request.out.empty() ? experiment.name + ".inp" : request.out;
   require_writable(file);
   Status status(false);
@@ -129,7 +129,7 @@ Experiment one_of_each(Experiment e, const ExportRequest& request) {
         fmt::format("{}: a case has its own material, patches and size (allowed: --poisson-ratio, --model, --cells, "
                     "--voxels)",
                     request.what));
-  e.materials = {material_of(e, request.moduli.poisson_ratio)};
+  e = at_wanted(e, request.moduli.poisson_ratio);
   std::erase_if(e.models, is_external);
   e.models = {chosen_model(e, request.model)};
   if (!e.body.cells.empty()) e.body.cells.resize(1);

@@ -61,8 +61,8 @@ function caseChoices() {
 }
 
 function chosenCases(choice) {
-  if (choice === linearCases) return cases.filter(c => c.linear);
-  if (choice === largeCases) return cases.filter(c => !c.linear);
+  if (choice === linearCases) return ofOneAxis(cases.filter(c => c.linear));
+  if (choice === largeCases) return ofOneAxis(cases.filter(c => !c.linear));
   return cases.filter(c => c.id === choice);
 }
 
@@ -119,7 +119,7 @@ function poissonTooltip(unit) {
   return {
     filter: item => item.raw && item.raw.row,
     callbacks: {
-      title: items => items.length ? 'ν = ' + nuText(items[0].raw.row.poisson_ratio) : '',
+      title: items => items.length ? settingText(items[0].raw.result, items[0].raw.row.poisson_ratio) : '',
       label: item => `${item.dataset.label}: ${number(item.raw.y, 3)} ${unit}`,
       afterLabel: ({raw}) => [`${raw.result.name}, ${cellsWords(raw.row.cells)}`,
         raw.uncertainty === null ? 'reference without uncertainty'
@@ -131,7 +131,7 @@ function poissonTooltip(unit) {
 function missingNotes(chosen, resolution) {
   const failed = chosen.flatMap(result => result.runs.filter(run => !run.ok &&
     (['finest', 'coarsest'].includes(resolution) || cellsText(run.cells) === resolution)).map(run => [result, run]));
-  return failed.slice(0, 4).map(([result, run]) => `No result: ${run.model} at ν = ${nuText(run.poisson_ratio)}, ` +
+  return failed.slice(0, 4).map(([result, run]) => `No result: ${run.model} at ${settingText(result, run.poisson_ratio)}, ` +
     `${result.name}, ${cellsWords(run.cells)} (${run.message || 'no reason given'}).`)
     .concat(failed.length > 4 ? [`${failed.length - 4} more runs without a result.`] : []);
 }
@@ -224,7 +224,7 @@ function poissonChart(chosen, measure, resolution, even) {
   options.scales = {
     x: {type: even ? 'category' : 'linear', labels: even ? nus.map(nuText) : undefined, offset: even,
         min: even ? undefined : nus[0] - room, max: even ? undefined : nus[nus.length - 1] + room,
-        title: {display: true, text: 'Poisson’s ratio ν', color: ink}, grid: {color: grid},
+        title: {display: true, text: settingWords(chosen), color: ink}, grid: {color: grid},
         ticks: {color: ink, includeBounds: false}},
     y: logAxis(`${measureText(measure)} [${unit}]`, limits),
   };
@@ -240,7 +240,7 @@ function poissonDrawing(chosen, measure, resolution, even) {
   const one = chosen.length === 1;
   return {
     name: `${one ? chosen[0].key : 'all'}-error-${measure}`,
-    caption: `${one ? chosen[0].name : `Largest of ${chosen.length} cases`}: ${errorWords(measure)} against Poisson’s ratio, ` +
+    caption: `${one ? chosen[0].name : `Largest of ${chosen.length} cases`}: ${errorWords(measure)} against ${settingWords(chosen).replace(' ν', '')}, ` +
       `${['finest', 'coarsest'].includes(resolution) ? resolution + ' cells' : resolution}`,
     notes: ['Below the shaded band a difference cannot be told from the uncertainty of the reference; such points are hollow.',
             ...(springCount(chosen) > mostLines ? ['Models struck out in the legend are hidden: click to show them.'] : []),
@@ -329,7 +329,7 @@ function convergenceLines(result, choice, measure, against) {
   if (kind === 'nu')
     return models.map(model => ({name: model, model, nu: Number(which)}))
       .map(line => ({...line, points: convergencePoints(result, measure, line.model, line.nu, against)}));
-  return result.nus.map((nu, i) => ({name: 'ν = ' + nuText(nu), model: which, nu, color: rampColor(i, result.nus.length)}))
+  return result.nus.map((nu, i) => ({name: settingText(result, nu), model: which, nu, color: rampColor(i, result.nus.length)}))
     .map(line => ({...line, points: convergencePoints(result, measure, line.model, line.nu, against)}));
 }
 
@@ -396,11 +396,11 @@ function convergenceBand(lines, limits) {
   return [bandDataset([{x: limits.min, y}, {x: limits.max, y}])];
 }
 
-function convergenceTooltip(unit) {
+function convergenceTooltip(result, unit) {
   return {
     filter: item => item.raw && item.raw.row,
     callbacks: {
-      title: items => items.length ? `${items[0].raw.row.model}, ν = ${nuText(items[0].raw.row.poisson_ratio)}` : '',
+      title: items => items.length ? `${items[0].raw.row.model}, ${settingText(result, items[0].raw.row.poisson_ratio)}` : '',
       label: ({raw}) => `${number(raw.y, 3)} ${unit} with ${cellsWords(raw.row.cells)}`,
       afterLabel: ({raw}) => raw.run ? `${seconds(raw.run.seconds)}, ${number(raw.run.unknowns, 6)} unknowns` : '',
     },
@@ -415,7 +415,7 @@ function convergenceChart(result, choice, measure, against) {
   const datasets = lines.map(line => convergenceDataset(line, against));
   const guides = against === 'size' ? guideDatasets(lines) : [];
   const options = baseOptions();
-  options.plugins.tooltip = convergenceTooltip(unit);
+  options.plugins.tooltip = convergenceTooltip(result, unit);
   options.plugins.legend.labels.filter = (item, data) => !data.datasets[item.datasetIndex].guide;
   const x = against === 'size' ? sizeAxis(result, lines)
     : logAxis('time [s]', decades(points.map(p => p.x), []));
@@ -434,7 +434,7 @@ function convergenceDrawing(result, choice, measure, against) {
   return {
     name: `${result.key}-convergence-${measure}-${kind === 'nu' ? 'nu' + nuDigits(Number(which)) : which}`,
     caption: `${result.name}: ${errorWords(measure)} against ${against === 'size' ? 'cell size' : 'time'}, ` +
-      (kind === 'nu' ? `ν = ${nuText(Number(which))}` : which),
+      (kind === 'nu' ? `${settingText(result, Number(which))}` : which),
     notes: [...single, 'The order is the slope of a least-squares line through all resolutions. ' +
       'Block cases have singular edges at clamped faces, where order 2 cannot be expected.'],
     make,
@@ -459,8 +459,8 @@ function convergenceSection(section) {
   const chosen = () => cases.find(c => c.id === caseChoice.value);
   function update() {
     replaceOptions(measureChoice, measureChoices([chosen()]));
-    replaceOptions(lineChoice, [...chosen().nus.map(nu => ['nu:' + nu, `all models at ν = ${nuText(nu)}`]),
-                                ...chosen().models.map(model => ['model:' + model, `all ν of ${model}`])]);
+    replaceOptions(lineChoice, [...chosen().nus.map(nu => ['nu:' + nu, `all models at ${settingText(chosen(), nu)}`]),
+                                ...chosen().models.map(model => ['model:' + model, `all ${chosen().listed.symbol} of ${model}`])]);
     draw();
   }
   function draw() {

@@ -52,7 +52,7 @@ function costToReach(line, level) {
 // ---- drawing
 
 const panelHeight = 236, panelGap = 14, costMargins = {left: 62, right: 8, top: 28, bottom: 46, legend: 58};
-const panelTitle = ({result, measure, nu}) => `${result.name}, ${shortNames[measure]}, ν = ${nuText(nu)}`;
+const panelTitle = ({result, measure, nu}) => `${result.name}, ${shortNames[measure]}, ${settingText(result, nu)}`;
 const costModels = () => models.filter(model =>
   costRows.some(row => costNus().some(nu => costPoints(row, nu, costs.unknowns).some(point => point.model === model))));
 const costNus = () => distinct(costCases.flatMap(c => c.nus)).sort((a, b) => a - b);

@@ -198,7 +198,7 @@ function prepareCase(data) {
   const result = {
     experiment,
     name: experiment.name || '?',
-    key, id: 'case-' + key,
+    key, id: 'case-' + key, listed: experiment.listed || {part: '', symbol: 'ν', words: 'Poisson\'s ratio'},
     linear: experiment.kinematics === 'linear',
     verifies: (experiment.models || []).length === 0,
     runs: data.runs || [], rows: unpack(data.rows), references: data.references || [],
@@ -223,6 +223,16 @@ function prepareCase(data) {
     if (!result.minor.has(measure) && repeats(result, measure)) result.minor.add(measure);
   return result;
 }
+
+/// What a case lists: Poisson's ratio of the body, or a modulus of a region; "ν = 0.3", "E of tumour = 10000".
+const settingText = (result, value) => `${result.listed.symbol} = ${nuText(value)}`;
+/// Of several cases those that list the same: Poisson's ratio of the body, if any does.
+function ofOneAxis(several) {
+  const first = several.find(result => !result.listed.part) || several[0];
+  return several.filter(result => result.listed.words === first.listed.words);
+}
+const settingOption = (result, value) => result.listed.part ? settingText(result, value) : nuText(value);
+const settingWords = chosen => chosen.length > 0 && chosen[0].listed.part ? chosen[0].listed.words.replace("'", '’') : 'Poisson’s ratio ν';
 
 function findRun(result, {model, cells, poisson_ratio}) {
   return result.runAt.get(`${model}|${cellsText(cells)}|${poisson_ratio}`);

@@ -3,7 +3,7 @@
 
 const closestModels = (document.getElementById('first-bodies')?.dataset.closest || '').split('\n').filter(Boolean);
 /// The cases that the answer is about: the linear ones, or where there are none those of large deformation.
-const judgedCases = () => cases.some(result => result.linear) ? cases.filter(result => result.linear) : cases;
+const judgedCases = () => ofOneAxis(cases.some(result => result.linear) ? cases.filter(result => result.linear) : cases);
 
 // ---- two bodies
 
@@ -50,7 +50,7 @@ function firstPlaying(model) {
   aimAtPanels(viewer, panels, amplification, panels[0].shape.frames.flatMap(frame => Array.from(panels[0].shape.rest, (x, i) => x + amplification * frame[i])));
   charts.push(() => viewer.render());
   if (!matchMedia('(prefers-reduced-motion: reduce)').matches) playFrames(viewer, () => panels, () => amplification, clock);
-  return [viewer.node, el('p', {class: 'note'}, `${result.name}, ν = ${nuText(picture.poisson_ratio)}` +
+  return [viewer.node, el('p', {class: 'note'}, `${result.name}, ${settingText(result, picture.poisson_ratio)}` +
     (amplification === 1 ? '' : `, displacements drawn ${number(amplification, 3)} times as large`), clock)];
 }
 
@@ -86,7 +86,7 @@ function firstBodies(model) {
   aimAtPanels(viewer, panels, amplification);
   bar.show(colouring, top);
   charts.push(() => viewer.render());
-  box.append(viewer.node, bar.node, el('p', {class: 'note'}, `${offer.result.name}, ν = ${nuText(offer.nu)}` +
+  box.append(viewer.node, bar.node, el('p', {class: 'note'}, `${offer.result.name}, ${settingText(offer.result, offer.nu)}` +
     (amplification === 1 ? '' : `, displacements drawn ${number(amplification, 3)} times as large`) + '. Drag to turn.'));
 }
 
@@ -155,8 +155,8 @@ function dotPlot() {
 
   function draw() {
     const choice = Number(slider.value), wanted = choice === 0 ? several : [nus[choice - 1]];
-    said.textContent = choice > 0 ? `at ν = ${nuText(nus[choice - 1])}`
-      : several.length === 1 ? `at ν = ${nuText(several[0])}` : `for ν from ${nuText(several[0])} to ${nuText(several[several.length - 1])}`;
+    said.textContent = choice > 0 ? `at ${settingText(shown[0], nus[choice - 1])}`
+      : several.length === 1 ? `at ${settingText(shown[0], several[0])}` : `for ${shown[0].listed.symbol} from ${nuText(several[0])} to ${nuText(several[several.length - 1])}`;
     const lines = names.filter(model => variants.checked || !isVariant(model) || closest.includes(model))
       .map(model => dotLine(shown, model, wanted)).filter(line => line.dots.length > 0).sort(byRank);
     const all = lines.flatMap(line => line.dots.map(dot => dot.error)).filter(error => error > 0);
@@ -171,7 +171,7 @@ function dotPlot() {
       ...lines.flatMap(({model, dots, worst}) => [
         el('div', {class: closest.includes(model) ? 'dot-name closest' : 'dot-name'}, modelName(model), claimText(dots[0].result, model)),
         el('div', {class: 'dot-track'}, marks(), dots.map(dot => whisker(dot, model)), dots.map(({result, row, error}) => {
-          const text = `${model}, ${result.name}: ${percent(error)}${compared.length > 1 ? ` (${shortNames[row.measure]})` : ''} at ν = ${nuText(row.poisson_ratio)}`;
+          const text = `${model}, ${result.name}: ${percent(error)}${compared.length > 1 ? ` (${shortNames[row.measure]})` : ''} at ${settingText(result, row.poisson_ratio)}`;
           return el('span', {class: 'dot', role: 'img', title: text, 'aria-label': text, style: {left: at(error), color: modelPaint(model)}},
                     caseGlyphs[shown.indexOf(result) % caseGlyphs.length]);
         })),

@@ -43,7 +43,7 @@ function lineDrawing(result, quantityName, component) {
   const records = result.lines.filter(record => cellCount(record.cells) === finest);
   return {
     name: `${result.key}-line-${quantityName}-${lineComponents[component]}-nu${nuDigits(records[0].poisson_ratio)}`,
-    caption: `${result.name}: ${quantityName} ${lineComponents[component]} along the line, ν = ${nuText(records[0].poisson_ratio)}`,
+    caption: `${result.name}: ${quantityName} ${lineComponents[component]} along the line, ${settingText(result, records[0].poisson_ratio)}`,
     notes: [`Deviations are means over the points ${records[0].first} to ${records[0].last}; of several disordered networks the first is drawn.`],
     make: () => lineChart(records, quantityName, component, quantityName === 'stress' ? ' [Pa]' : ''),
   };

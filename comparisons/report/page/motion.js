@@ -45,7 +45,7 @@ function motionDrawing(result, nu, name) {
     .map(record => `${record.integrator}, ${number(1000 * record.time_step, 3)} ms`));
   return {
     name: `${result.key}-motion-${name}-nu${nuDigits(Number(nu))}`,
-    caption: `${result.name}: ${name.replace(/_/g, ' ')} in time, ν = ${nuText(Number(nu))}`,
+    caption: `${result.name}: ${name.replace(/_/g, ' ')} in time, ${settingText(result, Number(nu))}`,
     notes: [`Steps: ${steps.join('; ')}. ` +
             'Dotted: fewer cells. Dashed: the same model at rest under the whole load. Of several disordered networks the first is drawn.'],
     make: () => motionChart(result, nu, name),
@@ -91,7 +91,7 @@ function motionSection(section) {
   const result = () => having.find(c => c.id === caseChoice.value);
 
   function update() {
-    replaceOptions(nuChoice, historyNus(result()).map(nu => [nu, nuText(Number(nu))]));
+    replaceOptions(nuChoice, historyNus(result()).map(nu => [nu, settingOption(result(), Number(nu))]));
     replaceOptions(quantityChoice, historyNames(result()).map(name => [name, name.replace(/_/g, ' ')]));
     draw();
   }

@@ -55,7 +55,7 @@ function worstCell(result, model) {
   if (!worst) return el('td', {class: 'number'}, failed ? lost : '–');
   const reaction = worstReaction(result, model), worse = reaction && reaction.error > worst.error ? reaction : worst;
   return el('td', {class: 'number ' + tint(result, worse.row)}, percent(worst.error),
-            el('small', {}, `ν = ${nuText(worst.row.poisson_ratio)}`), reactionNote(result, model), lost);
+            el('small', {}, `${settingText(result, worst.row.poisson_ratio)}`), reactionNote(result, model), lost);
 }
 
 /// The largest reaction error of a model, where a support is moved.
@@ -170,7 +170,7 @@ function problemPart(result) {
 
 const withUnit = (text, unit) => unit ? `${text} [${unit}]` : text;
 
-function referenceTable(measure, records) {
+function referenceTable(result, measure, records) {
   const unit = records[0].unit;
   const write = column(measure, unit, records.flatMap(record => [...record.values, record.value]));
   const columns = Math.max(...records.map(record => record.values.length));
@@ -183,13 +183,13 @@ function referenceTable(measure, records) {
     el('td', {class: 'number'}, el('b', {}, write.text(record.value))),
     el('td', {class: 'number'}, '± ' + write.short(record.uncertainty)), record.note);
   return [el('h5', {}, withUnit(measureText(measure), write.unit)),
-    table('reference', [...(elements.length > 1 ? ['element'] : []), 'ν', ...grids.map((names, i) => right(names.length > 1 ? `grid ${i + 1}` : names[0] || `grid ${i + 1}`)),
+    table('reference', [...(elements.length > 1 ? ['element'] : []), result.listed.symbol, ...grids.map((names, i) => right(names.length > 1 ? `grid ${i + 1}` : names[0] || `grid ${i + 1}`)),
                         right('observed order'), right('value'), right('uncertainty'), 'how'], records.map(line))];
 }
 
 function referencePart(result) {
   const measures = distinct(result.references.map(record => record.measure));
-  const tables = list => list.map(measure => referenceTable(measure, result.references.filter(r => r.measure === measure)));
+  const tables = list => list.map(measure => referenceTable(result, measure, result.references.filter(r => r.measure === measure)));
   return [el('h4', {}, 'Reference and its uncertainty'),
     measures.length === 0 ? notice('There is no record of a reference for this case.')
       : el('p', {class: 'note'}, 'Finite elements on successively finer grids; where their values fall into a regular ' +
@@ -211,7 +211,7 @@ function deformationTable(result) {
   const cell = (d, key, text) => el('td', {class: 'number' + (result.linear && d[key] > limits[key] ? ' coarse' : '')}, text);
   return [el('h5', {}, 'Largest principal strain and rotation', el('small', {}, '99 % of the volume stay below' +
       (result.linear ? '; linear theory is for a few per cent and a few degrees: marked beyond 5 % or 5°' : ''))),
-    table('deformation', ['ν', right('principal strain'), right('rotation'), right('loads applied [N]'), right('supports react with [N]')], result.deformations.map(d => tr(nuText(d.poisson_ratio),
+    table('deformation', [result.listed.symbol, right('principal strain'), right('rotation'), right('loads applied [N]'), right('supports react with [N]')], result.deformations.map(d => tr(nuText(d.poisson_ratio),
       cell(d, 'principal_strain', percent(100 * d.principal_strain)), cell(d, 'rotation_deg', number(d.rotation_deg, 2) + '°'),
       forceCell(d, d.applied_N), forceCell(d, d.reacted_N))))];
 }
@@ -263,7 +263,7 @@ function resultTable(result, measure) {
   const small = isDistance(measure) || !rows.some(row => isNumber(row.error)) ? '' : `below each value its error${scale.startsWith('%') ? ' in ' + scale : ''}`;
   return [el('h5', {}, withUnit(measureText(measure), write.unit),
              el('small', {}, [measureMeaning(measure), small].filter(Boolean).join('; '))),
-    table('results', ['model', 'cells', ...result.nus.map(nu => right(`ν = ${nuText(nu)}`))],
+    table('results', ['model', 'cells', ...result.nus.map(nu => right(`${settingText(result, nu)}`))],
           [referenceLine(result, measure, write), ...lines])];
 }
 
@@ -294,8 +294,8 @@ function checkRow(check) {
     el('td', {class: 'measure'}, [check.source, check.where].filter(Boolean).join(', ')));
 }
 
-function checksTable(checks) {
-  return table('checks', ['verdict', 'model', 'ν', 'cells', 'measure', right('expected'), right('computed'),
+function checksTable(result, checks) {
+  return table('checks', ['verdict', 'model', result.listed.symbol, 'cells', 'measure', right('expected'), right('computed'),
     right('of the tolerance'), right('uncertainty of the reference'), 'source'], checks.map(checkRow));
 }
 
@@ -305,8 +305,8 @@ function checksPart(result) {
   const open = checks.length > 16 ? checks.filter(check => check.verdict !== 'pass') : checks;
   const held = checks.length > 16 ? checks.filter(check => check.verdict === 'pass') : [];
   return [el('h4', {}, 'Expectations'), checks.length === 0 ? notice('This case states no expectations.') : null,
-    open.length > 0 ? checksTable(open) : null,
-    held.length > 0 ? el('details', {class: 'fold'}, el('summary', {}, `${held.length} expectations hold`), checksTable(held)) : null];
+    open.length > 0 ? checksTable(result, open) : null,
+    held.length > 0 ? el('details', {class: 'fold'}, el('summary', {}, `${held.length} expectations hold`), checksTable(result, held)) : null];
 }
 
 function publishedRow(item) {
@@ -320,7 +320,7 @@ function publishedRow(item) {
 
 function publishedPart(result) {
   if (result.published.length === 0) return [];
-  return [el('h4', {}, 'Published values'), table('published', ['model', 'ν', 'measure', right('published'), right('ours'),
+  return [el('h4', {}, 'Published values'), table('published', ['model', result.listed.symbol, 'measure', right('published'), right('ours'),
     right('ours to published'), 'where', 'remark'], result.published.map(publishedRow))];
 }
 
@@ -336,7 +336,7 @@ function runsPart(result) {
   const time = result.runs.reduce((sum, run) => sum + (run.set_up_seconds || 0) + (run.seconds || 0), 0);
   return el('details', {class: 'fold'},
     el('summary', {}, `Runs: ${result.runs.length}` + (failed ? `, ${failed} without result` : '') + `, ${seconds(time)}`),
-    table('runs', ['model', 'ν', 'cells', 'kinematics', 'solver', right('iterations'), right('residual'), right('set-up'), right('solve'),
+    table('runs', ['model', result.listed.symbol, 'cells', 'kinematics', 'solver', right('iterations'), right('residual'), right('set-up'), right('solve'),
                    right('unknowns'), right('memory [MiB]'), 'message'], result.runs.map(runRow)));
 }
 

@@ -179,7 +179,7 @@ function problemPicture(result) {
   paint();
   const node = el('div', {class: 'glance'}, el('div', {class: 'choices'}, colouringChoice.node,
       net ? el('label', {class: 'ghost'}, meshBox, 'mesh of the reference') : null), viewer.node, pictures.length > 1 && top > 0 ? bar.node : null,
-    el('p', {class: 'note'}, `ν = ${nuText(nu)}, ${/tets/.test(cells) ? cells : cells + ' cells'}` +
+    el('p', {class: 'note'}, `${settingText(result, nu)}, ${/tets/.test(cells) ? cells : cells + ' cells'}` +
       (amplification === 1 ? ', displacements to scale' : `, displacements drawn ${number(amplification, 3)} times as large`) + '. Drag or use the arrow keys to turn.'));
   return {node, redraw: () => viewer.render()};
 }

@@ -88,7 +88,7 @@ const panelsText = (panels, colouring) => panels.map(panel => {
 }).join(' ');
 
 function shapesCaption(result, {nu, cells, surface}) {
-  return `${result.name}: deformed shapes, ν = ${nuText(Number(nu))}, ${/tets/.test(cells) ? cells : cells + ' cells'}` +
+  return `${result.name}: deformed shapes, ${settingText(result, Number(nu))}, ${/tets/.test(cells) ? cells : cells + ' cells'}` +
     (surface === 'smooth' ? ', the true surface carried along' : '');
 }
 
@@ -194,7 +194,7 @@ function shapesSection(section) {
 
   function update() {
     const {nus} = choicesOf(result()), fresh = nuChoice.value === '';
-    replaceOptions(nuChoice, nus.map(nu => [String(nu), nuText(nu)]));
+    replaceOptions(nuChoice, nus.map(nu => [String(nu), settingOption(result(), nu)]));
     if (fresh) nuChoice.value = String(nus.includes(0.4) ? 0.4 : nus[nus.length >> 1]);
     viewer.newCase = true;
     updateCells();

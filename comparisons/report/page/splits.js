@@ -70,7 +70,7 @@ function splitOverNu(result, measure, model) {
   return entries.length === 0 ? null : {
     name: `${result.key}-split-${measure}-${model}`, ...splitNotes(measure),
     caption: `${result.name}: parts of the error of ${model}, ${measureText(measure)}, ${cellsWords(entries[0].cells)}`,
-    make: () => splitBars(measure, entries, entries.map(s => nuText(s.poisson_ratio)), 'Poisson’s ratio ν'),
+    make: () => splitBars(measure, entries, entries.map(s => nuText(s.poisson_ratio)), settingWords([result])),
   };
 }
 
@@ -79,7 +79,7 @@ function splitOverModels(result, measure, nu) {
   const entries = models.flatMap(model => at.filter(s => s.model === model));
   return entries.length === 0 ? null : {
     name: `${result.key}-split-${measure}-nu${nuDigits(nu)}`, ...splitNotes(measure),
-    caption: `${result.name}: parts of the error, ${measureText(measure)}, ν = ${nuText(nu)}, finest cells`,
+    caption: `${result.name}: parts of the error, ${measureText(measure)}, ${settingText(result, nu)}, finest cells`,
     make: () => splitBars(measure, entries, entries.map(s => s.model), 'model'),
   };
 }
@@ -115,7 +115,7 @@ function splitOverEdge(result, measure, model, nu) {
     .sort((a, b) => a.voxel_edge_m - b.voxel_edge_m);
   return distinct(entries.map(s => s.voxel_edge_m)).length < 2 ? null : {
     name: `${result.key}-split-edge-${measure}-${model}-nu${nuDigits(nu)}`,
-    caption: `${result.name}: parts of the error of ${model} against the voxel edge, ${measureText(measure)}, ν = ${nuText(nu)}`,
+    caption: `${result.name}: parts of the error of ${model} against the voxel edge, ${measureText(measure)}, ${settingText(result, nu)}`,
     ...splitNotes(measure), notes: ['Sizes without sign; hollow: negative. The order is the slope of a least-squares line.'],
     make: () => splitEdgeChart(measure, entries),
   };

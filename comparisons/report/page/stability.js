@@ -21,11 +21,11 @@ function stabilityChart(result, cells) {
     return {x: nuText(nu), y: run ? keptLoad(run) : null, run};
   }))}));
   const options = baseOptions();
-  options.plugins.tooltip = {callbacks: {title: items => items.length ? `ν = ${nuText(items[0].raw.run.poisson_ratio)}` : '',
+  options.plugins.tooltip = {callbacks: {title: items => items.length ? `${settingText(result, items[0].raw.run.poisson_ratio)}` : '',
     label: ({dataset, raw}) => raw.run.ok ? `${dataset.label} bears the whole load` : `${dataset.label} up to ${percent(raw.y)} of the load`,
     afterLabel: ({raw}) => raw.run.ok ? [] : [raw.run.message]}};
   options.scales = {
-    x: {type: 'category', labels: nus.map(nuText), offset: true, title: {display: true, text: 'Poisson’s ratio ν', color: ink}, grid: {color: grid}, ticks: {color: ink}},
+    x: {type: 'category', labels: nus.map(nuText), offset: true, title: {display: true, text: settingWords([result]), color: ink}, grid: {color: grid}, ticks: {color: ink}},
     y: {type: 'linear', min: 0, max: 100, title: {display: true, text: 'stable up to [% of the load]', color: ink}, grid: {color: grid}, ticks: {color: ink}},
   };
   return {type: 'line', data: {datasets}, options, plugins: withLineEnds(options, datasets)};

@@ -72,6 +72,19 @@ TEST(Regions, CutABoxExactly) {
   EXPECT_WORDS(notes.at(0), "region 'part' is 12.69 % of the body");
 }
 
+TEST(Regions, ThatAreThinTakeNoMoreTetrahedraThanABody) {
+  for (const double beyond : {0.0, 9.0}) {  // of the sides of the body
+    Mesh mesh = cube();
+    mark_regions({region(PatchRule::Box{{-beyond, -beyond, 0.44}, {1 + beyond, 1 + beyond, 0.44 + 1. / 60}})}, 1, mesh);
+    EXPECT_NEAR(volume_of(mesh, 1), 1. / 60, 1e-12);
+    const auto inside = std::ranges::count(mesh.materials, 1);
+    EXPECT_GT(inside, 5000);
+    EXPECT_LT(inside, 50000);
+    EXPECT_LT(mesh.tetrahedra.size(), 200000u);
+    EXPECT_EQ(facets_of_one_cell(mesh), outer_facets(mesh).size());
+  }
+}
+
 TEST(Regions, CutABallByFacetsOfItsVolume) {
   const double exact = 4 * std::numbers::pi / 3 * std::pow(ball.radius, 3);
   for (const double coarseness : {2.25, 1.5, 1.0, 0.5}) {
@@ -270,6 +283,33 @@ TEST_F(RegionSurfaces, ThatPokeOutOfTheBodyAreClippedAndThoseThatOverlapPaintedO
   EXPECT_WORDS(notes.at(0), "60 % of its shape lies outside of the body");
   EXPECT_WORDS(notes.at(0), "40 % of it lies in later regions");
   EXPECT_EQ(facets_of_one_cell(mesh), outer_facets(mesh).size());
+}
+
+TEST_F(RegionSurfaces, ThatTouchOrNestLeaveNoGap) {
+  Mesh mesh = cube();
+  const Surface left = test::moved(test::box({0.25, 0.5, 0.5}, 2), 1, {0.25, 0.25, 0.25}),
+                right = test::moved(test::box({0.25, 0.5, 0.5}, 3), 1, {0.5, 0.25, 0.25});
+  mark_regions({enclosed("left.stl", left), enclosed("right.stl", right)}, 1, mesh);
+  EXPECT_NEAR(volume_of(mesh, 1), 0.0625, 1e-3 * 0.0625);
+  EXPECT_NEAR(volume_of(mesh, 2), 0.0625, 1e-3 * 0.0625);
+  EXPECT_EQ(facets_of_one_cell(mesh), outer_facets(mesh).size());
+  std::array<double, 3> across = {0, 0, 0};  // cells whose middle lies within a tenth of the common face
+  for (std::size_t c = 0; c < mesh.tetrahedra.size(); ++c) {
+    Vec3 middle = Vec3::Zero();
+    for (const int n : mesh.tetrahedra[c]) middle += mesh.nodes.row(n).transpose() / 4;
+    if ((middle - Vec3(0.5, 0.5, 0.5)).cwiseQuotient(Vec3(0.1, 0.2, 0.2)).cwiseAbs().maxCoeff() < 1)
+      ++across.at(mesh.materials[c]);
+  }
+  EXPECT_EQ(across[0], 0);
+  EXPECT_GT(std::min(across[1], across[2]), 0);
+  Mesh nested = cube();
+  mark_regions({enclosed("outer.stl", test::moved(test::sphere(0.3, 3), 1, {0.5, 0.5, 0.5})),
+                enclosed("inner.stl", test::moved(test::sphere(0.15, 3), 1, {0.53, 0.5, 0.48}))},
+               1, nested);
+  const double inner = volume(test::sphere(0.15, 3)), outer = volume(test::sphere(0.3, 3));
+  EXPECT_NEAR(volume_of(nested, 2), inner, 0.06 * inner);
+  EXPECT_NEAR(volume_of(nested, 1), outer - inner, 0.06 * outer);
+  EXPECT_EQ(facets_of_one_cell(nested), outer_facets(nested).size());
 }
 
 TEST_F(RegionSurfaces, OfAllTheBodyAreIt) {

@@ -24,9 +24,9 @@ TEST(SecondOpinion, IsNotGivenByANumberThatIsNone) {
 TEST(CrossCheck, TakesTheCasesOwnPoissonsRatios) {
   Experiment e;
   e.materials = {{1e4, 0.25, 1000}, {1e4, 0.4, 1000}};
-  EXPECT_EQ(material_of(e, {}).poisson_ratio, 0.25);
-  EXPECT_EQ(material_of(e, 0.4).poisson_ratio, 0.4);
-  EXPECT_THROW(material_of(e, 0.3), InputError);
+  EXPECT_EQ(at_wanted(e, {}).materials.front().poisson_ratio, 0.25);
+  EXPECT_EQ(at_wanted(e, 0.4).materials.front().poisson_ratio, 0.4);
+  EXPECT_THROW(at_wanted(e, 0.3), InputError);
 }
 
 }  // namespace

@@ -372,8 +372,10 @@ TEST(Headline, AStateWithWrinklesIsNoStateOfTheMaterial) {
 }
 
 TEST(Headline, WhatMayBeLostIsSaidBeforeTheRun) {
+  Experiment press;
+  press.name = "press";
   EXPECT_EQ(
-      limit_sentence("press", {"hybmss", -0.5, -0.2, -0.212, -0.209, "waves of any length grow", "hybmss_avg"}),
+      limit_sentence(press, {"hybmss", -0.5, -0.2, -0.212, -0.209, "waves of any length grow", "hybmss_avg"}),
       "press: hybmss at ν = −0.5 may lose its equilibrium: it is to be shortened by 20 %, more in places, and its "
       "lattice without end is stable to 21 % with free sides and 21 % with held sides (waves of any length grow); "
       "hybmss_avg is stable there");

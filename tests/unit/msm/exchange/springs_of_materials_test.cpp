@@ -3,9 +3,13 @@
 
 #include <nlohmann/json.hpp>
 
+#include "meshes/voxels/voxelise.h"
 #include "msm/dynamics/time_step.h"
+#include "msm/embedding/supports.h"
+#include "msm/exchange/anchored_springs.h"
 #include "msm/exchange/springs_file.h"
 #include "msm/models.h"
+#include "msm/statics/equilibrium.h"
 #include "problem/system/input_error.h"
 #include "support/says.h"
 #include "support/two_materials.h"
@@ -45,6 +49,37 @@ TEST(SpringsOfMaterials, AreReadAsTheyWereWritten) {
   EXPECT_LE((forces(read.model, x) - ours).cwiseAbs().maxCoeff(), 1e-12 * ours.cwiseAbs().maxCoeff());
   const double step = safe_time_step(file.model, file.density);
   EXPECT_NEAR(safe_time_step(read.model, read.density), step, 1e-9 * step);
+}
+
+TEST(SpringsOfMaterials, BendLikeTheModelTheyCameFrom) {
+  const Mesh body = test::layered_block({2, 2, 3}, {2, 2, 6}, 2, 1.45);
+  const CutBody cut = cut_body({Vec3(-0.13, -0.21, -0.17), 0.5, {5, 5, 7}}, body);
+  const Mesh cubes = voxelise(cut.grid, body).mesh;
+  SpringsFile file;
+  file.density = around.density;
+  file.material = around;
+  file.regions = {{"upper", inside}};
+  file.model = build_cut(test::model("hybmss_avg"), cut, {}, Mesh{}, around, {inside}).model;
+  const Embedding loads_of = embed(cut, {}, file.model.network, Mesh{});
+  file.loads = loads_of.patches;
+  file.volumes = loads_of.volumes;
+  file.anchors["z_min"] = anchors_of_patch(cut, "z_min", {around, inside});
+  const std::vector<Load> loads = {PrescribedDisplacement{"z_min", {0.0, 0.0, 0.0}}, PatchForce{"z_max", Vec3(1, 2, 3)},
+                                   Gravity{Vec3(3, -2, 1)}};
+  const auto solved = [&](const MassSpringModel& model, const Embedding& embedding) {
+    const Equilibrium e =
+        solve_linear(model, transfer(loads, cubes, embedding, model.network, around.density, Kinematics::linear));
+    EXPECT_TRUE(e.ok) << e.message;
+    return e;
+  };
+  const EmbeddedModel built = build_cut(test::model("hybmss_avg"), cut, {"z_min"}, cubes, around, {inside});
+  const auto [model, embedding] = anchored(parse_springs(springs_as_json(file), "own"), {"z_min"}, cubes);
+  ASSERT_FALSE(model.network.bonds.empty());
+  const Equilibrium ours = solved(built.model, built.embedding), theirs = solved(model, embedding);
+  EXPECT_LT((theirs.displacement - ours.displacement).norm(), 1e-9 * ours.displacement.norm());
+  EXPECT_LT((theirs.support - ours.support).norm(), 1e-8 * ours.support.norm());
+  const NodalVectors of_mesh = built.embedding.weights * ours.displacement;
+  EXPECT_LT((embedding.weights * theirs.displacement - of_mesh).norm(), 1e-9 * of_mesh.norm());
 }
 
 TEST(SpringsOfMaterials, AreRefusedWithTheirPlace) {

@@ -70,9 +70,51 @@ TEST(CaseWithRegions, SaysOnceWhereEachLiesAndOfWhat) {
   EXPECT_WORDS(message_of(body + alone + tumour + "box_m = [[0, 0, 0], [1, 1, 1]]\n"), "says twice where it lies");
   EXPECT_WORDS(message_of(body + alone + tumour + "poisson_ratio = 0.3\n"), "region: has 3 elastic moduli");
   EXPECT_WORDS(message_of(body + alone + tumour + tumour), "'tumour' is the name of another region");
-  EXPECT_WORDS(message_of(body + alone + "[[region]]\nname = \"a\"\nvolume = 1\nyoungs_modulus_Pa = [1, 2]\n" +
-                          "poisson_ratio = 0\n"),
-               "region.youngs_modulus_Pa: is a list (allowed: one number; lists are for [material])");
+}
+
+const std::string one_nu = std::regex_replace(body, std::regex(R"(\[0.3, 0.45\])"), "0.3") + alone;
+
+std::string region_of(const std::string& name, const std::string& moduli) {
+  return "[[region]]\nname = \"" + name + "\"\nvolume = \"" + name + "\"\n" + moduli;
+}
+
+TEST(CaseWithRegions, ListsTheMaterialsOfOneOfThem) {
+  const std::string soft = region_of("soft", "youngs_modulus_Pa = 10\npoisson_ratio = 0.4\n");
+  const Experiment e = parse_experiment(
+      one_nu + soft + region_of("core", "youngs_modulus_Pa = 5\npoisson_ratio = [0.2, 0.499]\n"), "case.toml");
+  EXPECT_EQ(e.settings(), (std::vector<double>{0.2, 0.499}));
+  EXPECT_EQ(e.listed_words(), "Poisson's ratio of core");
+  EXPECT_EQ(e.at(1).regions[1].material.poisson_ratio, 0.499);
+  EXPECT_EQ(e.at(1).setting_of(e.body_material(1)), 0.499);
+  EXPECT_EQ(e.at(1).regions[0].material.poisson_ratio, 0.4);
+  const Experiment contrast = parse_experiment(
+      one_nu + region_of("core", "youngs_modulus_Pa = [1e2, 1e4, 1e6]\npoisson_ratio = 0.3\n"), "case.toml");
+  EXPECT_EQ(contrast.settings(), (std::vector<double>{1e2, 1e4, 1e6}));
+  EXPECT_EQ(contrast.listed_symbol(), "E of core");
+  EXPECT_EQ(contrast.at(2).regions[0].material.youngs_modulus, 1e6);
+  const Experiment of_body = parse_experiment(body + alone + soft, "case.toml");
+  EXPECT_EQ(of_body.settings(), (std::vector<double>{0.3, 0.45}));
+  EXPECT_EQ(of_body.setting_of(of_body.body_material(1)), 0.45);
+}
+
+TEST(CaseWithRegions, ListsMaterialsInOnePlaceAlone) {
+  const std::string list = region_of("core", "youngs_modulus_Pa = 5\npoisson_ratio = [0.2, 0.3]\n");
+  EXPECT_WORDS(message_of(body + alone + list),
+               "region.poisson_ratio: of 'core' is a list, and material.poisson_ratio in line 7 is one (allowed: a "
+               "list in one place of the file)");
+  EXPECT_WORDS(message_of(one_nu + list + region_of("shell", "youngs_modulus_Pa = [1, 2]\npoisson_ratio = 0\n")),
+               "region.youngs_modulus_Pa: of 'shell' is a list, and region.poisson_ratio in line");
+  EXPECT_WORDS(message_of(one_nu + region_of("core", "youngs_modulus_Pa = [1, 1]\npoisson_ratio = 0\n")),
+               "region.youngs_modulus_Pa: gives the Young's modulus 1 twice (allowed: each once)");
+  const Experiment e = parse_experiment(one_nu + list, "case.toml");
+  try {
+    require_one_listed(e);
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_WORDS(error.what(),
+                 "Poisson's ratio of core is a list (allowed here: one number, or --poisson-ratio with "
+                 "one of 0.2, 0.3)");
+  }
 }
 
 TEST(CaseWithRegions, IsRefusedWhereOneMaterialIsKnown) {
