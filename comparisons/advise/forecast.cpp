@@ -99,6 +99,7 @@ Forecast forecast_from(const std::vector<Pilot>& pilots) {
   for (const PilotModel& m : pilot.models) {
     out.models.push_back(m.label);
     if (m.step) out.cut_steps[m.label] = *m.step;
+    if (m.measuring > 0) out.measuring[m.label] = m.measuring;
   }
   out.resolutions = resolutions_of(pilot);
   out.predict = [pilots](const std::string& label, const Resolution& r) {

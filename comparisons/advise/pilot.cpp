@@ -31,6 +31,7 @@ constexpr double slowest = 0.5, fastest = 2;       // orders at which errors may
 constexpr double large_displacement_share = 0.15;  // of the cells, where each is solved by Newton's method
 constexpr double voxel_share = 0.6;                // of the cells of a cut body, whose solver takes more iterations
 constexpr double quadratic_share = 0.75;           // of the models' cells along an edge, for quadratic elements
+constexpr double seconds_to_measure = 7e-3;        // of processor, a cut cell
 constexpr double most_pilot_cells = 5e5;           // of any lattice of a pilot
 
 /// A model solved on a lattice.
@@ -238,7 +239,6 @@ PilotModel pilot_model(const PilotRun& run, std::size_t number, bool measured = 
   p.coarsened = measured;
   PilotModel out;
   out.label = label_of(run, number, measured);
-  if (measured) out.most_cells = most_measured_cells;
   std::vector<NodalVectors> fields;
   Lattice last;
   for (std::size_t i = 0; i < run.every.size(); ++i) {
@@ -265,6 +265,11 @@ PilotModel pilot_model(const PilotRun& run, std::size_t number, bool measured = 
     extrapolate_fields(out, fields, run.truths.back().displacement, nodal_volumes(*last.mesh), run.share);
   else
     extrapolate_errors(out);
+  if (measured) {
+    const double of_cube = static_cast<double>(last.cut->cells.size()) / cells_of(last);  // less on finer lattices
+    out.most_cells = most_measured_cells / of_cube;
+    out.measuring = seconds_to_measure * of_cube;
+  }
   if (p.cut.value_or(false))
     out.step = step_cost([&] { return build_on(run.prepared, last, p, run.material, true).model; },
                          run.material.density, cells_of(last), last.voxel_edge);

@@ -102,14 +102,14 @@ void print_table(const std::vector<SecondOpinion>& rows) {
 
 void print_title(const Question& q) {
   const auto& e = q.experiment();
-  const std::string element = q.deck(0).element;
+  const std::string element = calculix::element_of(e, q.material, *q.meshes[0]);
   to_stdout("\n{}: nu = {:g}, {}\n", e.name, q.material.poisson_ratio, e.kinematics);
   to_stdout("CalculiX {}: {} up to {}, {}\n", calculix::version(), element, q.grids[2],
             element == "C3D20R" ? "integrated with 8 points: with 27 they lock as nu nears 1/2" : "fully integrated");
   if (q.same_meshes())
     to_stdout("ours: P2 on the same meshes\n");
   else
-    to_stdout("ours: Q2 up to {}\n", cells_text(q.prepared.reference_cells, " x "));
+    to_stdout("ours: Q2 up to {}\n", q.moves ? q.grids[2] : cells_text(q.prepared.reference_cells, " x "));
   if (!q.prepared.sharing.empty())
     to_stdout("left out, as held edges in common make them a convention: forces on {}\n",
               fmt::join(q.prepared.sharing, ", "));
@@ -132,6 +132,7 @@ int check_material(const Question& q) {
     to_stdout("no answer from {}\n", calculix ? "our reference" : "CalculiX");
     return 1;
   }
+  if (calculix->values.size() != ours->values.size()) to_stdout("not all quantities have a value from both\n");
   const std::vector<SecondOpinion> rows = compare_opinions(q, *calculix, *ours);
   print_table(rows);
   std::fflush(stdout);
@@ -170,8 +171,11 @@ int cross_check(const std::filesystem::path& file, const CrossCheckOptions& opti
     experiment = at_wanted(experiment, options.poisson_ratio);
   require_one_listed(experiment);
   if (options.modes == 0) calculix::require_counterpart(experiment);
-  if (options.modes == 0 && experiment.dynamics && experiment.reference.in_time)
+  if (options.modes == 0 && experiment.dynamics && experiment.reference.in_time) {
     calculix::require_motion_counterpart(experiment);
+    if (options.cells[0] > 0)
+      throw InputError("--cells: is for equilibria and frequencies; the grids of a motion have [reference] cells");
+  }
   if (experiment.body.is_voxels() && options.cells[0] > 0)
     throw InputError("--cells: is for bodies of hexahedra; the tetrahedra of this one have [reference] edge_m");
   end_at_interrupts();

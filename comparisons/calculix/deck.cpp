@@ -42,6 +42,11 @@ std::vector<HeldComponent> held_components(const Experiment& experiment, const Q
   return held;
 }
 
+/// How far points of a curved body may lie outside a coarse mesh of it [m].
+double reach_of(const Mesh& mesh) {
+  return (mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff()).norm() / 100;
+}
+
 /// Everything but gravity as concentrated loads.
 NodalVectors concentrated(const Experiment& experiment, const IsotropicMaterial& material, const Mesh& linear,
                           const QuadraticMesh& mesh) {
@@ -58,7 +63,7 @@ NodalVectors concentrated(const Experiment& experiment, const IsotropicMaterial&
       forces += areas / areas.sum() * f->force.transpose();
     }
     if (const auto* p = std::get_if<PointForce>(&load))
-      forces += weights_at(mesh, linear, p->at.transpose()).transpose() * p->force.transpose();
+      forces += weights_at(mesh, linear, p->at.transpose(), reach_of(linear)).transpose() * p->force.transpose();
   }
   return forces;
 }
@@ -96,6 +101,10 @@ void require_motion_counterpart(const Experiment& e) {
   none(motion.plane.has_value(), "plane to fall on");
   none(!e.masses.empty(), "attached masses");
   none(e.probes.empty(), "history without a [[probe]]");
+  const Course& course = motion.course;
+  const double sample = motion.duration / motion.samples,
+               shortest = course.frequency > 0 ? 1 / course.frequency : course.settled();
+  none(shortest > 0 && shortest < 4 * sample, "loads that change within four samples (allowed: more samples)");
   for (const Load& load : e.loads) none(std::holds_alternative<PrescribedRotation>(load), "support that turns in time");
 }
 
@@ -105,13 +114,14 @@ bool needs_reduced_integration(const Experiment& experiment, const IsotropicMate
   return largest > largest_ratio_full_integration;
 }
 
+const char* element_of(const Experiment& experiment, const IsotropicMaterial& material, const Mesh& mesh) {
+  if (mesh.hexahedra.empty()) return "C3D10";
+  return needs_reduced_integration(experiment, material) ? "C3D20R" : "C3D20";
+}
+
 void require_counterpart(const Experiment& experiment) { counterpart(experiment); }
 
 namespace {
-
-double mesh_size(const Mesh& mesh) {
-  return (mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff()).norm();
-}
 
 Eigen::VectorXd nodal_masses(const Deck& deck) {
   Eigen::VectorXd masses = Eigen::VectorXd::Zero(deck.mesh.nodes.rows());
@@ -129,8 +139,7 @@ Deck make_deck(const Experiment& experiment, const IsotropicMaterial& material, 
   if (task.modes == 0) require_counterpart(experiment);
   Deck deck{experiment, material, mesh, quadratic(mesh), {}, {}, {}, Vec3::Zero(), steps_for(experiment), task, {}};
   check_labels(experiment, deck.mesh);
-  const bool locks = needs_reduced_integration(experiment, material);
-  deck.element = mesh.hexahedra.empty() ? "C3D10" : locks ? "C3D20R" : "C3D20";
+  deck.element = element_of(experiment, material, mesh);
   deck.held = held_components(experiment, deck.mesh);
   if (task.modes > 0) {
     deck.experiment.kinematics = "linear";
@@ -140,7 +149,7 @@ Deck make_deck(const Experiment& experiment, const IsotropicMaterial& material, 
   for (const Load& load : experiment.loads)
     if (const auto* g = std::get_if<Gravity>(&load)) deck.gravity += g->acceleration;
   if (task.steps == 0) return deck;
-  deck.at_probes = weights_at(deck.mesh, mesh, probe_points(experiment), mesh_size(mesh) / 100);
+  deck.at_probes = weights_at(deck.mesh, mesh, probe_points(experiment), reach_of(mesh));
   const Eigen::VectorXd masses = nodal_masses(deck);
   deck.centre = deck.mesh.nodes.transpose() * masses / masses.sum();
   return deck;

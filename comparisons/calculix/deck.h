@@ -46,6 +46,9 @@ inline constexpr double largest_ratio_full_integration = 0.4;
 /// @param material of the body where no region is
 bool needs_reduced_integration(const Experiment& experiment, const IsotropicMaterial& material);
 
+/// "C3D20", "C3D20R" or "C3D10" of a case on a mesh.
+const char* element_of(const Experiment& experiment, const IsotropicMaterial& material, const Mesh& mesh);
+
 /// Kinematics that CalculiX supports: "linear, neo_hooke_isochoric, st_venant_kirchhoff".
 std::string kinematics_with_counterpart();
 

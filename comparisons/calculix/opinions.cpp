@@ -56,7 +56,8 @@ Cells finest_cells(const PreparedCase& prepared, const IsotropicMaterial& materi
   }
   for (const int n : cells)
     if (n < 4 || n % 4 != 0)
-      throw InputError(fmt::format("--cells: {} is not divisible by 4 (the grid is halved twice)", n));
+      throw InputError(fmt::format("{}: {} is not divisible by 4 (the grid is halved twice)",
+                                   given[0] > 0 ? "--cells" : "reference.cells", n));
   return cells;
 }
 
@@ -179,9 +180,12 @@ fem::Request request_of(const Question& q) {
   return request;
 }
 
-Opinion opinion(const Question& q, std::vector<fem::Solution> solutions, Status& status) {
+std::optional<Opinion> opinion(const Question& q, std::vector<fem::Solution> solutions, Status& status) {
   const MotionReference limit = limit_of_motion(q.prepared, std::move(solutions));
-  if (limit.history.time.empty()) status.print(fmt::format("  no motion to compare: {}", limit.run.message));
+  if (limit.history.time.empty()) {
+    status.print(fmt::format("  no motion to compare: {}", limit.run.message));
+    return {};
+  }
   Opinion out;
   for (const auto& [name, value] : limit.measured) out.values["motion." + name] = value;
   out.history = limit.history;
@@ -240,7 +244,9 @@ std::optional<Opinion> our_equilibrium(const Question& q, Status& status) {
     if (!s.ok) return {};
     if (q.modes > 0) {
       answers.push_back({values_of(s.frequencies, q.modes), {}});
-      continue;
+      if (static_cast<int>(answers.back().values.size()) == q.modes) continue;
+      status.print(fmt::format("  FEM: {} modes of {}", answers.back().values.size(), q.modes));
+      return {};
     }
     const Field field{nullptr, {}, s.reactions, s.volume_change, s.volume_change_first_order};
     const Eigen::Index points = q.points.rows(), probes = s.displacement.rows() - points;

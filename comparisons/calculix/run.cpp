@@ -117,22 +117,28 @@ Printed read_dat(std::istream& in, Eigen::Index nodes) {
   return printed;
 }
 
-std::vector<std::pair<double, NodalVectors>> read_path(std::istream& in, Eigen::Index nodes) {
+std::vector<std::pair<double, NodalVectors>> read_path(std::istream& in, const NodalWeights& at_probes) {
   std::vector<std::pair<double, NodalVectors>> path;
+  NodalVectors u = NodalVectors::Zero(at_probes.cols(), 3);  // those of other nodes stay 0
+  const auto end_block = [&] {
+    if (!path.empty()) path.back().second = at_probes * u;
+  };
   bool of_probes = false;
   for (std::string line; std::getline(in, line);) {
     std::istringstream words(line);
     std::vector<std::string> word;
     for (std::string w; words >> w;) word.push_back(w);
     if (line.find(" for set ") != std::string::npos) {
+      end_block();
       of_probes = word[0] == "displacements" && line.find(" AT_PROBES ") != std::string::npos;
-      if (of_probes) path.emplace_back(number(word.back()), NodalVectors::Zero(nodes, 3));
+      if (of_probes) path.emplace_back(number(word.back()), NodalVectors());
     } else if (of_probes && word.size() == 4) {
       const long node = std::stol(word[0]) - 1;
-      if (node < 0 || node >= nodes) throw std::runtime_error(fmt::format("ccx printed a node {}", node + 1));
-      for (int c = 0; c < 3; ++c) path.back().second(node, c) = number(word[1 + c]);
+      if (node < 0 || node >= u.rows()) throw std::runtime_error(fmt::format("ccx printed a node {}", node + 1));
+      for (int c = 0; c < 3; ++c) u(node, c) = number(word[1 + c]);
     }
   }
+  end_block();
   return path;
 }
 
@@ -162,19 +168,20 @@ void fill_frequencies(const Deck& deck, std::istream& dat, Solution& solution) {
 /// A released body's first block is its equilibrium, in a step of one second.
 void fill_path(const Deck& deck, std::istream& dat, Solution& solution) {
   const bool released = deck.experiment.dynamics->released;
-  std::vector<std::pair<double, NodalVectors>> path = read_path(dat, deck.mesh.nodes.rows());
+  std::vector<std::pair<double, NodalVectors>> path = read_path(dat, deck.at_probes);
   if (released)
     path.erase(path.begin(),
                std::find_if(path.begin(), path.end(), [](const auto& at) { return at.first > 1 - 1e-6; }));
   else
-    path.insert(path.begin(), {0, NodalVectors::Zero(deck.mesh.nodes.rows(), 3)});
+    path.insert(path.begin(), {0, NodalVectors::Zero(deck.at_probes.rows(), 3)});
   if (static_cast<int>(path.size()) != deck.task.steps + 1) {
-    solution.message = fmt::format("ccx made {} steps of {}", static_cast<int>(path.size()) - 1, deck.task.steps);
+    solution.message = path.empty() ? "ccx printed no equilibrium to start from"
+                                    : fmt::format("ccx made {} steps of {}", path.size() - 1, deck.task.steps);
     return;
   }
   for (int i = 0; i <= deck.task.steps; ++i) {
     solution.time.push_back(deck.experiment.dynamics->duration * i / deck.task.steps);
-    solution.path.push_back(deck.at_probes * path[i].second);
+    solution.path.push_back(path[i].second);
   }
   solution.ok = true;
 }
@@ -212,7 +219,7 @@ Solution solve(const Deck& deck, double time_limit) {
       solution.message = fmt::format("ccx stopped at {:.4g} % of the load", 100 * printed.time / deck.steps);
     else
       fill_solution(deck, printed, solution);
-  } catch (const std::runtime_error& e) {
+  } catch (const std::exception& e) {  // what it printed is no number
     solution.message = e.what();
   }
   return solution;

@@ -34,8 +34,8 @@ Printed read_dat(std::istream& in, Eigen::Index nodes);
 /// Frequencies [Hz] in a .dat file of a deck with modes, ascending.
 std::vector<double> read_frequencies(std::istream& in);
 
-/// Displacements of AT_PROBES in a .dat file of a deck that moves, the others of its `nodes` nodes 0, by time.
-std::vector<std::pair<double, NodalVectors>> read_path(std::istream& in, Eigen::Index nodes);
+/// Displacements of the probes [m] in a .dat file of a deck that moves, by time.
+std::vector<std::pair<double, NodalVectors>> read_path(std::istream& in, const NodalWeights& at_probes);
 
 /// Error bounds of a solution due to printing with seven digits.
 struct PrintFloor {

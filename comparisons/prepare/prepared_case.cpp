@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -16,18 +18,42 @@ namespace springproof {
 
 namespace {
 
-/// Lets anchors act along the axes along which the loads hold their patch.
-void choose_axes(const std::vector<Load>& loads, const std::map<std::string, std::vector<int>>& held,
-                 Network& network) {
+/// Bits of the axes across which a patch lies: one, if it is flat and in a plane of the axes.
+int across(const Mesh& body, const std::string& name) {
+  Eigen::AlignedBox3d box;
+  for (const auto& facet : patch(body, name).facets)
+    for (const int n : facet)
+      if (n >= 0) box.extend(Vec3(body.nodes.row(n).transpose()));
+  int axes = 0;
+  for (int d = 0; d < 3; ++d) axes |= int(box.sizes()[d] <= 1e-9 * box.diagonal().norm()) << d;
+  return axes;
+}
+
+/// Lets anchors act along the axes along which the loads hold their patch.  A flat wall on which the body slides holds
+/// a strain across it alone, so that lambda + 2 G takes the place of E in the stiffness of its anchors: between walls
+/// all around, a body near nu = 1/2 would give way by them and not by itself.
+/// @param materials of the cells, by their number
+void choose_axes(const PreparedCase& prepared, const std::map<std::string, std::vector<int>>& held,
+                 const std::vector<IsotropicMaterial>& materials, Network& network) {
   if (network.anchors.empty()) return;
-  std::map<int, int> axes;  // of a node
-  for (const Load& load : loads) {
+  std::map<int, int> axes, walls;  // of a node
+  for (const Load& load : prepared.loads) {
     if (!prescribes_displacement(load)) continue;
     const PrescribedValue value = prescribed_displacement(load, Vec3::Zero(), Kinematics::linear);
-    for (const int node : held.at(*patch_of(load)))
+    const int wall = across(*prepared.body.tetrahedra.back(), *patch_of(load));
+    for (const int node : held.at(*patch_of(load))) {
       for (int d = 0; d < 3; ++d) axes[node] |= int(value[d].has_value()) << d;
+      walls[node] = wall;
+    }
   }
-  for (Anchor& a : network.anchors) a.axes = axes.at(a.node);
+  std::map<Hexahedron, std::size_t> cells;
+  for (std::size_t c = 0; c < network.cells.size(); ++c) cells[network.cells.corners[c]] = c;
+  for (Anchor& a : network.anchors) {
+    a.axes = axes.at(a.node);
+    if (a.axes != walls.at(a.node)) continue;
+    const IsotropicMaterial& m = materials[network.cells.material(cells.at(a.corners))];
+    a.stiffness *= (lame_lambda(m) + 2 * shear_modulus(m)) / m.youngs_modulus;
+  }
 }
 
 /// @throws InputError unless the file has, of each patch of the loads, what the case needs.
@@ -124,7 +150,9 @@ EmbeddedModel build_on(const PreparedCase& prepared, const Lattice& lattice, con
   for (const Load& load : prepared.loads)
     if (prescribes_displacement(load)) held.insert(*patch_of(load));
   EmbeddedModel built = built_on(prepared, lattice, parameters, held, material, in_motion);
-  choose_axes(prepared.loads, built.embedding.held, built.model.network);
+  std::vector<IsotropicMaterial> materials = materials_of(prepared.experiment.regions);
+  materials.insert(materials.begin(), material);
+  choose_axes(prepared, built.embedding.held, materials, built.model.network);
   attach_masses(prepared.experiment, *lattice.mesh, built);
   if (in_motion && takes_explicit_steps(prepared.experiment.dynamics)) soften_bonds(built.model, material.density);
   if (in_motion && held.empty()) {  // in flight all nodes fall alike

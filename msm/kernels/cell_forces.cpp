@@ -240,9 +240,8 @@ void CellForces<Real>::set_branches(const Relaxation& relaxation, const Averaged
   branches_.clear();
   for (const auto& [share, time] : relaxation.branches) {
     const BranchStep step = BranchStep::of(time_step / time);
-    const double gain = share * step.phi, lost = -std::expm1(-time_step / time);
-    branches_.push_back({static_cast<Real>(share), static_cast<Real>(step.decay), static_cast<Real>(gain),
-                         static_cast<Real>(gain * lost)});
+    const Real gain = static_cast<Real>(share * step.phi), decay = static_cast<Real>(step.decay);
+    branches_.push_back({static_cast<Real>(share), decay, gain, gain * (1 - decay)});  // a held strain relaxes to 0
   }
   if (forms_.empty() && relaxing()) {
     const LatticeAveraged<Real>& own = constants_[0].springs;

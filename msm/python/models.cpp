@@ -233,7 +233,12 @@ the model.)");
           "what the springs stand for; None: not known")
       .def_property_readonly(
           "safe_time_step",
-          [](const BodyModel& b) { return long_call([&] { return safe_time_step(b.model(), b.springs.density); }); },
+          [](const BodyModel& b) {
+            return long_call([&] {
+              const SpringsFile& s = b.springs;
+              return relaxing_time_step(s.model, s.density, s.relaxing, safe_time_step(s.model, s.density));
+            });
+          },
           "largest step of undamped explicit integration about rest [s]")
       .def(
           "forces",

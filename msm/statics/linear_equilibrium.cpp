@@ -99,7 +99,7 @@ Equilibrium solve_linear(const MassSpringModel& model, const BoundaryConditions&
       solve_mixed(problem, result);
     else
       solve_primal(problem, solver == LinearSolver::cholesky, result);
-    const bool iterated = solver == LinearSolver::multigrid && options.solver == LinearSolver::automatic;
+    const bool iterated = solver != LinearSolver::cholesky && options.solver == LinearSolver::automatic;
     if (!result.ok && iterated && result.unknowns <= judge_limit) solve_primal(problem, true, result);
   } catch (const std::runtime_error& e) {
     result.message = e.what();

@@ -34,6 +34,13 @@ struct VolumeRow {
   }
 };
 
+/// Of bonds, and of walls on which a body slides, of which lambda + 2 G is the modulus.
+template <class Lattice>
+bool has_stiff_ties(const Lattice& lattice) {
+  return !lattice.bonds.empty() ||
+         std::any_of(lattice.anchors.begin(), lattice.anchors.end(), [](const Anchor& a) { return a.axes != 7; });
+}
+
 }  // namespace
 
 /// One level of the cycle, in single precision.
@@ -148,7 +155,7 @@ void CutMixedMultigrid::Level::set_up_schur() {
 void CutMixedMultigrid::Level::set_up_patches() {
   const Carriers carriers = carriers_of(static_cast<int>(lattice.point.size()), lattice.carried);
   std::vector<std::vector<int>> cells_at(lattice.point.size()), points_of(lattice.corners.size());
-  for (std::size_t c = 0; c < lattice.corners.size() && !lattice.bonds.empty(); ++c)
+  for (std::size_t c = 0; c < lattice.corners.size() && has_stiff_ties(lattice); ++c)
     for (const int n : lattice.corners[c])
       for_each_carrier(carriers, n, [&](int i, double) {
         cells_at[i].push_back(static_cast<int>(c));
@@ -327,7 +334,7 @@ CutMixedMultigrid::CutMixedMultigrid(const MassSpringModel& model, const std::ve
     : nodes_(model.network, fixed), network_(model.network) {
   const AveragedSprings& law = *averaged_springs_of(model);
   MixedParts parts = mixed_parts(law);
-  const int schur_sweeps = volume_stiffness_ratio(model) > 1000 && network_.bonds.empty() ? 12 : 6;
+  const int schur_sweeps = volume_stiffness_ratio(model) > 1000 && !has_stiff_ties(network_) ? 12 : 6;
   const double l = network_.cells.edge, unit = law.shear_modulus * l;
   for (double& kappa : parts.kappa) kappa /= law.shear_modulus;
   gradient_.resize(24, static_cast<Eigen::Index>(network_.cells.size()));
