@@ -1,6 +1,7 @@
 // The isotropic linear-elastic material, given by any two of its moduli.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include <optional>
@@ -42,6 +43,8 @@ IsotropicMaterial material_from(const Moduli& given, double density = 1000.0);
 void check(const IsotropicMaterial& m);
 
 /// Whether two Poisson's ratios, either of which may come from a file, are equal to within 1e-9.
-inline bool same_poisson_ratio(double a, double b) { return std::abs(a - b) < 1e-9; }
+inline bool same_poisson_ratio(double a, double b) {
+  return std::abs(a - b) < 1e-9 * std::max({1.0, std::abs(a), std::abs(b)});  // a list of a region may be of moduli
+}
 
 }  // namespace springproof

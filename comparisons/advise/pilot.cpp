@@ -240,15 +240,15 @@ PilotModel pilot_model(const PilotRun& run, std::size_t number, bool measured = 
   PilotModel out;
   out.label = label_of(run, number, measured);
   std::vector<NodalVectors> fields;
-  Lattice last;
+  Lattice last = *run.every.back();
+  if (measured) last.measured = to_be_measured(run.prepared, last);
   for (std::size_t i = 0; i < run.every.size(); ++i) {
-    last = *run.every[i];
+    Lattice lattice = i + 1 < run.every.size() ? *run.every[i] : last;
     if (measured) {
-      progress::phase(fmt::format("measuring {} cells", last.cut->cells.size()));
-      last.measured = to_be_measured(run.prepared, last);
-      describe(last.measured->measured(p, run.material));
+      progress::phase(fmt::format("measuring {} cells", lattice.cut->cells.size()));
+      if (!lattice.measured) lattice.measured = to_be_measured(run.prepared, lattice);
+      describe(lattice.measured->measured(p, run.material));
     }
-    const Lattice& lattice = last;
     progress::phase(fmt::format("{} on {} cells", out.label, cells_of(lattice)));
     const LatticeSolve s = solve_on(run.prepared, lattice, p, run.material);
     if (!s.state.ok) {

@@ -80,7 +80,8 @@ int DiffCommand::run() const {
   print_lonely(first_, all.only_first);
   print_lonely(second_, all.only_second);
   if (!all.none())
-    for (const auto& [name, words] : first.listed) to_stdout("\nnu of {} is {}\n", name, words);
+    for (const ResultsFolder* side : {&first, &second})
+      for (const auto& [name, words] : side->listed) to_stdout("\nnu of {} is {}\n", name, words);
   return all.none() ? 0 : 1;
 }
 

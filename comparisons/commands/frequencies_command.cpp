@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "comparisons/judge/calibration.h"
+#include "comparisons/report/words.h"
 #include "comparisons/results/records.h"
 #include "comparisons/run/prepare.h"
 #include "comparisons/sweep/find_cases.h"
@@ -81,8 +82,14 @@ void print_modes(const FrequencyTable& t, const std::vector<const ModelFrequenci
   print_line("max", "", "", largest);
 }
 
+/// "nu = 0.3", beside a list in a region "E of core = 1e+06 Pa, nu = 0.3".
+std::string words_of(const Experiment& e, const IsotropicMaterial& m) {
+  const std::string listed = e.listed.region > 0 ? words::setting_text(e, e.settings().front()) + ", " : "";
+  return fmt::format("{}nu = {:g}", listed, m.poisson_ratio);
+}
+
 void print(const Experiment& e, const FrequencyTable& t, int modes) {
-  to_stdout("\n{}: nu = {:g}, {} cells, {}, E = {:g} Pa, {:g} kg/m^3\n", e.name, t.material.poisson_ratio,
+  to_stdout("\n{}: {}, {} cells, {}, E = {:g} Pa, {:g} kg/m^3\n", e.name, words_of(e, t.material),
             cells_text(t.lattice->cells, " x "), supports_words(e), t.material.youngs_modulus, t.material.density);
   if (t.failure.empty())
     to_stdout(
@@ -219,9 +226,11 @@ int FrequenciesCommand::run() const try {
     return at_setting(prepare_lattices(experiment), 0);
   }();
   if (!out_.empty()) fs::create_directories(out_);
+  const std::string listed =
+      experiment.listed.region > 0 ? words::setting_text(experiment, experiment.settings().front()) : "";
   for (const IsotropicMaterial& material : experiment.materials) {
     const auto solved = [&] {
-      const Status::Working working(status, fmt::format("{}, nu = {:g}", experiment.name, material.poisson_ratio));
+      const Status::Working working(status, fmt::format("{}, {}", experiment.name, words_of(experiment, material)));
       return natural_frequencies(prepared, material, options_);
     }();
     std::ranges::copy(known_quantities(experiment, records_of(solved.front())), std::back_inserter(known));
@@ -237,6 +246,7 @@ int FrequenciesCommand::run() const try {
   }
   if (!out_.empty())
     write_file(fs::path(out_) / "frequencies.json", nlohmann::json{{"case", experiment.name},
+                                                                   {"listed", listed},
                                                                    {"supports", supports_words(experiment)},
                                                                    {"tables", tables},
                                                                    {"calibration", calibration_json(known)}}

@@ -28,6 +28,7 @@ Indices free_parameters(const BoundedFit& p, const VectorXd& at, const VectorXd&
 VectorXd step_of(const BoundedFit& p, const VectorXd& at, const MatrixXd& J, const VectorXd& r, double damping) {
   const VectorXd slope = J.transpose() * r;
   const Indices free = free_parameters(p, at, slope);
+  if (free.empty()) return VectorXd::Zero(at.size());  // all are at a bound
   const MatrixXd of_free = J(Eigen::all, free);
   MatrixXd A = of_free.transpose() * of_free;
   A.diagonal() *= 1 + damping;

@@ -298,6 +298,7 @@ Experiment case_of_modes(Experiment e, const FrequencyOptions& options) {
   e.measures.clear();
   e.expectations.clear();
   e.elements.clear();
+  if (e.reference.elements.empty()) e.reference.elements = {"q2"};  // the reference of modes is always there
   e.kinematics = "linear";
   std::erase_if(e.models, is_external);
   for (ModelChoice& m : e.models) m.in_motion = false;

@@ -52,7 +52,7 @@ std::string to_csv(const std::vector<CaseResult>& results) {
       "spread,published,published_where,listed\n";
   for (const CaseResult& result : results) {
     const std::vector<PublishedRow> printed = printed_values(result);
-    const std::string listed = result.experiment.listed_words();
+    const std::string listed = result.experiment.listed.region > 0 ? result.experiment.listed_words() : "";
     for (const Row& row : result.rows) {
       const auto found =
           std::find_if(printed.begin(), printed.end(), [&](const PublishedRow& p) { return printed_for(p, row); });

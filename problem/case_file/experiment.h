@@ -191,6 +191,7 @@ struct Experiment {
   void leave_out_settings(Unwanted unwanted) {
     std::erase_if(listed.region > 0 ? listed.materials : materials,
                   [&](const IsotropicMaterial& m) { return unwanted(listed_modulus(m)); });
+    if (listed.region > 0 && !listed.materials.empty()) regions[listed.region - 1].material = listed.materials.front();
   }
   double listed_modulus(const IsotropicMaterial& m) const {
     return listed.stiffness ? m.youngs_modulus : m.poisson_ratio;

@@ -19,7 +19,7 @@ CASE = {
     "reference": {"elements": []},
     "expect": [{"model": "A1", "measure": "force.x_min.z", "source": "analytic", "value": 0.1, "within_relative": 1e-6, "where": "balance"}],
 }
-COLUMNS = "case kinematics model poisson_ratio cells measure value unit reference reference_uncertainty error samples spread published published_where".split()
+COLUMNS = "case kinematics model poisson_ratio cells measure value unit reference reference_uncertainty error samples spread published published_where listed".split()
 
 
 def test_rows_are_those_of_the_same_models():

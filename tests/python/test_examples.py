@@ -143,7 +143,7 @@ def test_a_material_that_relaxes(tmp_path):
     name = importlib.util.spec_from_file_location("springs", EXAMPLES / "springs.py")
     springs = importlib.util.module_from_spec(name)
     name.loader.exec_module(springs)
-    model, s = sp.read_springs(tmp_path / "bar.json"), springs.load(tmp_path / "bar.json")
+    model, s = sp.read_springs(tmp_path / "bar.json"), springs.load(str(tmp_path / "bar.json"))
     motion, x = model.motion([]), model.positions.copy()
     v, load = np.zeros(x.shape), 1e-3 * np.sin(np.arange(x.size)).reshape(x.shape)
     motion.set_forces(load)

@@ -72,6 +72,15 @@ void require_writable(const fs::path& file) {
                                  file.string(), why));
 }
 
+/// "; core: E = 1e+06 Pa, nu = 0.3" of each region.
+template <class Regions>
+std::string words_of(const Regions& regions) {
+  std::string words;
+  for (const auto& r : regions)
+    words += fmt::format("; {}: E = {:g} Pa, nu = {:g}", r.name, r.material.youngs_modulus, r.material.poisson_ratio);
+  return words;
+}
+
 int export_calculix(const ExportRequest& request) {
   if (is_body(request.what))
     throw InputError(fmt::format("{}: is a body without loads (allowed with --to calculix: a case)", request.what));
@@ -101,8 +110,8 @@ int export_calculix(const ExportRequest& request) {
   std::ostringstream out;
   calculix::write(deck, out);
   write_named_file(file, out.view());
-  to_stdout("{}: {} nodes, {} elements {}, nu = {:g}\n", file, deck.mesh.nodes.rows(), deck.mesh.elements.size(),
-            deck.element, material.poisson_ratio);
+  to_stdout("{}: {} nodes, {} elements {}, nu = {:g}{}\n", file, deck.mesh.nodes.rows(), deck.mesh.elements.size(),
+            deck.element, material.poisson_ratio, words_of(deck.experiment.regions));
   return 0;
 }
 
@@ -234,9 +243,9 @@ std::string parts_of(const SpringsFile& s) {
 }
 
 void report(const fs::path& file, const SpringsFile& s) {
-  to_stdout("{}: {}, {} nodes, {}, {:.4g} kg, safe time step {:.4g} s, nu = {:g}\n", file.string(), s.origin.model,
+  to_stdout("{}: {}, {} nodes, {}, {:.4g} kg, safe time step {:.4g} s, nu = {:g}{}\n", file.string(), s.origin.model,
             s.model.network.nodes(), parts_of(s), s.derived.at("mass_kg"), s.derived.at("safe_time_step_s"),
-            s.material->poisson_ratio);
+            s.material->poisson_ratio, words_of(s.regions));
 }
 
 /// Says so where the cells of a cut body hold something else than the model has by its name.

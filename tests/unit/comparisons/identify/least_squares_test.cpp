@@ -69,6 +69,14 @@ TEST(LeastSquares, StaysBetweenTheBounds) {
   EXPECT_LT(J.col(0).dot(found.residuals), -0.02 * J.col(0).norm());
 }
 
+TEST(LeastSquares, EndsWhereEveryParameterIsAtABound) {
+  BoundedFit one = problem(exact(vector({3})), vector({0}));
+  one.upper[0] = 1;
+  const LeastSquaresFit fitted = fit(one);
+  EXPECT_TRUE(fitted.converged) << fitted.message;
+  EXPECT_DOUBLE_EQ(fitted.parameters[0], 1);
+}
+
 TEST(LeastSquares, GoesAroundParametersThatHaveNoResult) {
   BoundedFit p = problem(exact(vector({0.4, -0.3})), vector({-1, 0}));
   const BoundedFit::Residuals all = p.residuals;

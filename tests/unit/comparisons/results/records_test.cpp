@@ -27,7 +27,7 @@ std::vector<std::string> lines_of(const std::string& text) {
 TEST(ResultsCsv, ColumnsAreTheAgreedOnes) {
   EXPECT_EQ(to_csv({}),
             "case,kinematics,model,poisson_ratio,cells,measure,value,unit,reference,reference_uncertainty,error,"
-            "samples,spread,published,published_where\n");
+            "samples,spread,published,published_where,listed\n");
 }
 
 TEST(ResultsCsv, RowKeepsEveryDigitAndLeavesUnknownEmpty) {
@@ -35,20 +35,20 @@ TEST(ResultsCsv, RowKeepsEveryDigitAndLeavesUnknownEmpty) {
   c.rows.push_back({{"emsm", -0.2, {24, 4, 4}}, "beam", "linear", "volume_change", 1.0 / 3, "1", 0.1 + 0.2, {}, {}});
   const auto lines = lines_of(to_csv({c}));
   ASSERT_EQ(lines.size(), 2u);
-  EXPECT_EQ(lines[1], "beam,linear,emsm,-0.2,24x4x4,volume_change,0.3333333333333333,1,0.30000000000000004,,,1,,,");
+  EXPECT_EQ(lines[1], "beam,linear,emsm,-0.2,24x4x4,volume_change,0.3333333333333333,1,0.30000000000000004,,,1,,,,");
 }
 
 TEST(ResultsCsv, TextWithCommasQuotesAndLineBreaksIsQuoted) {
   CaseResult c;
   c.rows.push_back({{"say \"A=1\"", 0.25, {1, 1, 1}}, "a,b", "linear", "two\nlines", 1, "N", {}, {}, {}});
-  EXPECT_NE(to_csv({c}).find("\n\"a,b\",linear,\"say \"\"A=1\"\"\",0.25,1x1x1,\"two\nlines\",1,N,,,,1,,,\n"),
+  EXPECT_NE(to_csv({c}).find("\n\"a,b\",linear,\"say \"\"A=1\"\"\",0.25,1x1x1,\"two\nlines\",1,N,,,,1,,,,\n"),
             std::string::npos);
 }
 
 TEST(ResultsCsv, NumbersThatAreNotFiniteAreEmpty) {
   CaseResult c;
   c.rows.push_back({{"m", 0.25, {1, 1, 1}}, "a", "linear", "x", std::nan(""), "N", INFINITY, {}, {}});
-  EXPECT_EQ(lines_of(to_csv({c}))[1], "a,linear,m,0.25,1x1x1,x,,N,,,,1,,,");
+  EXPECT_EQ(lines_of(to_csv({c}))[1], "a,linear,m,0.25,1x1x1,x,,N,,,,1,,,,");
 }
 
 TEST(ResultsCsv, PrintedValuesStandBesideOursOrOnALineOfTheirOwn) {
@@ -63,9 +63,9 @@ TEST(ResultsCsv, PrintedValuesStandBesideOursOrOnALineOfTheirOwn) {
   c.checks.push_back({{"m", 0.25, {1, 1, 1}}, "x", "N", "analytic", 7, 1.0, 0.5, {}, Verdict::fail, "nowhere"});
   const auto lines = lines_of(to_csv({c}));
   ASSERT_EQ(lines.size(), 4u);
-  EXPECT_EQ(lines[1], "cube,linear,m,0.25,1x1x1,x,1,N,,,,1,,1.25,Fig. 2");
-  EXPECT_EQ(lines[2], "cube,linear,m,0.25,2x2x2,x,2,N,,,,1,,2.5,\"Table 1, m\"");
-  EXPECT_EQ(lines[3], "cube,linear,lost,0.25,1x1x1,x,,N,,,,1,,3.5,Table 1");
+  EXPECT_EQ(lines[1], "cube,linear,m,0.25,1x1x1,x,1,N,,,,1,,1.25,Fig. 2,");
+  EXPECT_EQ(lines[2], "cube,linear,m,0.25,2x2x2,x,2,N,,,,1,,2.5,\"Table 1, m\",");
+  EXPECT_EQ(lines[3], "cube,linear,lost,0.25,1x1x1,x,,N,,,,1,,3.5,Table 1,");
 }
 
 TEST(CellsText, GridsAndTetrahedra) {
@@ -76,7 +76,7 @@ TEST(CellsText, GridsAndTetrahedra) {
   EXPECT_EQ(cell_count({24, 4, 4}), 384);
   CaseResult c;
   c.rows.push_back({{"fem_p1", 0.25, {812, 0, 0}}, "a", "linear", "x", 1, "N", {}, {}, {}});
-  EXPECT_EQ(lines_of(to_csv({c}))[1], "a,linear,fem_p1,0.25,812 tets,x,1,N,,,,1,,,");
+  EXPECT_EQ(lines_of(to_csv({c}))[1], "a,linear,fem_p1,0.25,812 tets,x,1,N,,,,1,,,,");
 }
 
 TEST(DescribeLoad, PrescribedDisplacement) {

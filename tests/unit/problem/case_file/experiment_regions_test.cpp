@@ -91,6 +91,9 @@ TEST(CaseWithRegions, ListsTheMaterialsOfOneOfThem) {
       one_nu + region_of("core", "youngs_modulus_Pa = [1e2, 1e4, 1e6]\npoisson_ratio = 0.3\n"), "case.toml");
   EXPECT_EQ(contrast.settings(), (std::vector<double>{1e2, 1e4, 1e6}));
   EXPECT_EQ(contrast.listed_symbol(), "E of core");
+  Experiment last = contrast;
+  last.leave_out_settings([&](double E) { return E != contrast.settings().back(); });
+  EXPECT_EQ(last.regions.front().material.youngs_modulus, contrast.settings().back());
   EXPECT_EQ(contrast.at(2).regions[0].material.youngs_modulus, 1e6);
   const Experiment of_body = parse_experiment(body + alone + soft, "case.toml");
   EXPECT_EQ(of_body.settings(), (std::vector<double>{0.3, 0.45}));
