@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "meshes/volume.h"
 #include "msm/dynamics/terms/relaxing_cells.h"
 #include "msm/exchange/springs_file.h"
 #include "msm/models.h"
@@ -69,7 +70,64 @@ void require_regions(const ModelParameters& p, const Experiment& e) {
                                  e.listed.materials.size() > 1 ? ", of one material each" : ""));
 }
 
+/// Where a region is.
+struct Place {
+  double volume = 0;           ///< [m^3]
+  Vec3 moment = Vec3::Zero();  ///< its integral of x [m^4]
+
+  void add(double part, const Vec3& at) {
+    volume += part;
+    moment += part * at;
+  }
+  Vec3 centre() const { return moment / volume; }
+};
+
+/// By material: of tetrahedra.
+std::vector<Place> places_of(const Mesh& body, std::size_t materials) {
+  std::vector<Place> places(materials);
+  const Eigen::VectorXd volumes = cell_volumes(body, body.nodes);
+  for (std::size_t c = 0; c < body.materials.size(); ++c) {
+    Vec3 middle = Vec3::Zero();
+    for (const int n : body.tetrahedra[c]) middle += body.nodes.row(n).transpose() / 4;
+    places[body.materials[c]].add(volumes[static_cast<Eigen::Index>(c)], middle);
+  }
+  return places;
+}
+
+/// Of cut cells, each at the middle of its cube.
+std::vector<Place> places_of(const Network& network, std::size_t materials) {
+  std::vector<Place> places(materials);
+  for (std::size_t c = 0; c < network.cells.size(); ++c) {
+    Vec3 middle = Vec3::Zero();
+    for (const int n : network.cells.corners[c]) middle += network.X.row(n).transpose() / 8;
+    places[network.cells.material(c)].add(network.cells.shape(c).volume(), middle);
+  }
+  return places;
+}
+
 }  // namespace
+
+void check_own_regions(const PreparedCase& prepared) {
+  constexpr double other_volume = 0.1;  // relative; and by more than a cell's edge elsewhere
+  const Experiment& e = prepared.experiment;
+  for (std::size_t m = 0; m < prepared.models.size(); ++m) {
+    const ModelParameters& p = prepared.models[m];
+    if (!p.springs || p.springs->regions.empty() || prepared.body.tetrahedra.empty()) continue;
+    const std::vector<Place> wanted = places_of(*prepared.body.tetrahedra.back(), e.regions.size() + 1),
+                             found = places_of(p.springs->model.network, e.regions.size() + 1);
+    for (std::size_t r = 1; r < wanted.size(); ++r) {
+      const bool same = std::abs(found[r].volume / wanted[r].volume - 1) < other_volume &&
+                        (found[r].centre() - wanted[r].centre()).norm() < p.springs->model.network.cells.edge;
+      if (same) continue;
+      const Vec3 is = found[r].centre(), should = wanted[r].centre();
+      throw InputError(e.models[m].where,
+                       fmt::format("compare.models: {}: /cells/material: '{}' has {:.4g} m^3 about ({:.4g}, {:.4g}, "
+                                   "{:.4g}) m (allowed: the case's, {:.4g} m^3 about ({:.4g}, {:.4g}, {:.4g}) m)",
+                                   e.models[m].label, e.regions[r - 1].name, found[r].volume, is[0], is[1], is[2],
+                                   wanted[r].volume, should[0], should[1], should[2]));
+    }
+  }
+}
 
 void check_own_models(const PreparedCase& prepared) {
   const Experiment& e = prepared.experiment;

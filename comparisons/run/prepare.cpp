@@ -389,6 +389,7 @@ PreparedCase prepare_lattices(const Experiment& experiment) {
     prepared.body.geo = find_geo(experiment.body, experiment.file);
     progress::phase("cutting the body");
     experiment.body.is_voxels() ? prepare_voxel_body(prepared) : prepare_blocks(prepared);
+    check_own_regions(prepared);
     for (const Lattice& lattice : prepared.lattices) check_fineness(experiment.body, lattice.cells);
     if (experiment.body.is_voxels())
       check_supports(experiment, *prepared.body.tetrahedra.back());

@@ -362,6 +362,9 @@ for form in json npz; do export_to regions.toml --to springs --out "regions.$for
 grep -q '"version": 5' regions.json && grep -q '"bonds": ' regions.json && grep -q '"name":"core"' regions.json || fail "no file of several materials"
 sed 's/"hybmss_avg"/"hybmss_avg", { file = "regions.json", label = "mine" }/' regions.toml >both.toml
 "$program" compare both.toml --out both --quiet >log 2>&1 || fail "a file of several materials as a model: $(cat log)"
+sed '/name = "core"/,/^near/s/radius_m = [0-9.e-]*/radius_m = 0.005/' both.toml >moved.toml
+"$program" compare moved.toml --out refused --quiet >log 2>&1 && fail "a file of a larger region is a model"
+grep -q "/cells/material: 'core' has .* about .* (allowed: the case's" log || fail "a larger region: $(cat log)"
 for measure in displacement.a.z force.low.z; do
   awk -F, -v m="$measure" '$6 == m { v[$3] = $7 } END { d = v["mine"] / v["hybmss_avg"] - 1; exit !(d < 1e-9 && d > -1e-9) }' both/results.csv ||
     fail "$measure of a file of several materials is another"
