@@ -203,14 +203,13 @@ function middleSeconds(model) {
 
 function firstFacts(model) {
   const box = document.getElementById('first-facts');
-  const parts = judgedCases().flatMap(result => result.regions);
+  const parts = judgedCases().flatMap(result => result.regions.map(region => `${partName(region)} E = ${moduliOf(result, region).E} Pa, ν = ${moduliOf(result, region).nu}`));
   if (!model && parts.length === 0) return box.remove();
   const nus = distinct(judgedCases().flatMap(result => result.nus)), ordinary = nus.filter(nu => nu >= 0);
   const fact = (term, text) => text ? [el('dt', {}, term), el('dd', {}, text)] : [];
   const doubts = judgedCases().flatMap(result => rankedMeasures.flatMap(measure => rowsAt(result, measure)).map(row => scaledUncertainty(result, row))).filter(isNumber);
-  const of = ({youngs_modulus_Pa: E, poisson_ratio: nu, ...part}) => `${partName(part)} E = ${number(E)} Pa, ν = ${nuText(nu)}`;
   const ours = middleSeconds(model), fem = middleSeconds('fem_q1');
-  box.append(...fact('Materials', distinct(parts.map(of)).join('; ')));
+  box.append(...fact('Materials', distinct(parts).join('; ')));
   if (model) box.append(...fact('Displacement of ' + model, listedErrors(model, ordinary, 'displacement_error')),
     ...fact('Motion of ' + stillName(model), listedErrors(model, nus, 'motion_error')),
     ...fact('Reactions of moved supports', listedErrors(model, ordinary, 'reaction_error')),
