@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "msm/dynamics/inertia.h"
 #include "msm/kernels/cell_forces.h"
@@ -266,8 +267,13 @@ template class ListMotion<float>;
 
 namespace {
 
-/// Whether kernels have the branches: beside averaged springs those whose long-time moduli are theirs but for bending.
-bool kernels_relax(const MassSpringModel& model, const RelaxingCells& relaxing) {
+/// Whether kernels have the branches: beside averaged springs those whose long-time moduli are theirs but for bending;
+/// and none so slow that a step changes them by little more than round-off.
+template <class Real>
+bool kernels_relax(const MassSpringModel& model, const RelaxingCells& relaxing, double time_step) {
+  constexpr double round_off = 0.01;  // of what a branch has relaxed
+  for (const RelaxationBranch& b : relaxing.relaxation.branches)
+    if (round_off * time_step / b.time < std::numeric_limits<Real>::epsilon()) return false;
   const AveragedSprings* own = averaged_springs_of(model);
   if (!own || !relaxing.acts()) return true;
   const HourglassStiffness &a = own->hourglass, &b = relaxing.cells.hourglass;
@@ -282,7 +288,7 @@ std::unique_ptr<BlockForces<Real>> block_forces(const MassSpringModel& model, co
   if (std::any_of(anchors.begin(), anchors.end(), [](const Anchor& a) { return a.axes != 7; })) return nullptr;
   const AveragedSprings& dashpots = options.viscosity.cells();
   if (can(model, Capability::cell_kernels) && !options.viscosity.along_springs() && dashpots.shift == 0 &&
-      kernels_relax(model, options.relaxation)) {
+      kernels_relax<Real>(model, options.relaxation, options.time_step.value())) {
     auto cells = std::make_unique<CellForces<Real>>(model, options.instructions, dashpots, options.viscosity.time());
     cells->set_branches(options.relaxation.relaxation, options.relaxation.cells, options.time_step.value());
     return cells;

@@ -235,6 +235,17 @@ TEST(RelaxingCells, OfBoxesByThreadsAndInFloatsMoveAsPlainLoopsDo) {
   }
 }
 
+TEST(RelaxingCells, InFloatsBranchesOfYearsDoNotEndInRoundOff) {
+  const MassSpringModel model = bar("hybmss_avg", {4, 2, 2}).model;
+  MotionOptions options{.precision = Precision::float32};
+  options.relaxation = RelaxingCells::of(model, rubber, {{{0.5, 1e8}}});
+  options.time_step = 0.5 * relaxing_time_step(model, density, options.relaxation, safe_time_step(model, density));
+  PlainMotion plain(model, density, options);
+  const NodalVectors expected = after(plain, model, 20);
+  const std::unique_ptr<Motion> motion = make_motion(model, density, options);
+  EXPECT_LT((after(*motion, model, 20) - expected).norm(), 1e-4 * (expected - bent(model.network.X)).norm());
+}
+
 TEST(RelaxingCells, AStepOfImplicitEulerEndsWithTheForcesOfItsEnd) {
   const MassSpringModel model = bar("hybmss_avg", {2, 1, 1}).model;
   const double dt = 0.02;
