@@ -99,7 +99,7 @@ NodalVectors ImplicitMotion::relaxing_forces() const {
 }
 
 std::optional<BranchEnergies> ImplicitMotion::branch_energies() const {
-  if (!overstrains_.acts()) return {};
+  if (!options_.branch_energies || !overstrains_.acts()) return {};
   return BranchEnergies{overstrains_.energy(), overstrains_.dissipated()};
 }
 

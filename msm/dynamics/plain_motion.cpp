@@ -14,6 +14,7 @@ PlainMotion::PlainMotion(const MassSpringModel& model, double density, const Mot
       damping_(options.damping),
       viscosity_(options.viscosity),
       overstrains_(model.network, options.relaxation),
+      energies_wanted_(options.branch_energies),
       average_(mass_average(model.network, density, options)),
       x_(model.network.X),
       v_(NodalVectors::Zero(x_.rows(), 3)),
@@ -40,7 +41,7 @@ NodalVectors PlainMotion::relaxing_forces() const {
 
 /// At the positions, one step after those that the branches were advanced to.
 std::optional<BranchEnergies> PlainMotion::branch_energies() const {
-  if (!overstrains_.acts()) return {};
+  if (!energies_wanted_ || !overstrains_.acts()) return {};
   Overstrains now = overstrains_;
   now.advance(x_, dt_);
   return BranchEnergies{now.energy(), now.dissipated()};

@@ -37,6 +37,7 @@ class PlainMotion : public Motion {
   double dt_, damping_;
   Viscosity viscosity_;
   Overstrains overstrains_;  ///< at the beginning of the last step
+  bool energies_wanted_;
   MassAverage average_;
   NodalVectors x_, v_;
   NodalVectors of_supports_;  ///< velocities of moved unknowns [m/s], zero on free ones
