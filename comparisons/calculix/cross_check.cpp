@@ -77,7 +77,7 @@ std::vector<SecondOpinion> compare_opinions(const Question& q, const Opinion& ca
     if (const auto other = ours.values.find(measure); other != ours.values.end())
       rows.push_back(second_opinion(measure, value, other->second));
   if (!calculix.history.time.empty() && !ours.history.time.empty()) rows.push_back(history_row(calculix, ours));
-  if (q.modes > 0 || q.moves) return rows;
+  if (q.modes > 0 || q.moves()) return rows;
   rows.push_back(field_row(field_measure, calculix.field, ours.field));
   if (q.same_equations()) rows.push_back(field_row(same_mesh_measure, as_solved(calculix), as_solved(ours)));
   return rows;
@@ -109,7 +109,7 @@ void print_title(const Question& q) {
   if (q.same_meshes())
     to_stdout("ours: P2 on the same meshes\n");
   else
-    to_stdout("ours: Q2 up to {}\n", q.moves ? q.grids[2] : cells_text(q.prepared.reference_cells, " x "));
+    to_stdout("ours: Q2 up to {}\n", q.moves() ? q.grids[2] : cells_text(q.prepared.reference_cells, " x "));
   if (!q.prepared.sharing.empty())
     to_stdout("left out, as held edges in common make them a convention: forces on {}\n",
               fmt::join(q.prepared.sharing, ", "));
@@ -171,7 +171,7 @@ int cross_check(const std::filesystem::path& file, const CrossCheckOptions& opti
     experiment = at_wanted(experiment, options.poisson_ratio);
   require_one_listed(experiment);
   if (options.modes == 0) calculix::require_counterpart(experiment);
-  if (options.modes == 0 && experiment.dynamics && experiment.reference.in_time) {
+  if (options.modes == 0 && moves_in_time(experiment)) {
     calculix::require_motion_counterpart(experiment);
     if (options.cells[0] > 0)
       throw InputError("--cells: is for equilibria and frequencies; the grids of a motion have [reference] cells");

@@ -282,8 +282,7 @@ void require_frequencies(const Question& q) {
 
 Question question(const PreparedCase& prepared, const IsotropicMaterial& material, const CrossCheckOptions& options) {
   const Experiment& e = prepared.experiment;
-  const bool moves = options.modes == 0 && e.dynamics && e.reference.in_time;
-  Question q{prepared, material, options.modes, moves, {}, prepared.body.tetrahedra, {}, {}, options.time_limit};
+  Question q{prepared, material, options.modes, {}, prepared.body.tetrahedra, {}, {}, options.time_limit};
   if (q.same_meshes()) {
     for (const auto& mesh : q.meshes) q.grids.push_back(fmt::format("{} tetrahedra", mesh->tetrahedra.size()));
     std::tie(q.points, q.weights) = middles(*q.meshes.front());
@@ -291,7 +290,7 @@ Question question(const PreparedCase& prepared, const IsotropicMaterial& materia
     return q;
   }
   const Cells finest =
-      moves ? motion_request(prepared, material).grids[2].cells : finest_cells(prepared, material, options.cells);
+      q.moves() ? motion_request(prepared, material).grids[2].cells : finest_cells(prepared, material, options.cells);
   for (const Cells& cells : three_grids(finest)) {
     Mesh mesh = mesh_geo(prepared.body.geo, e.body.size, cells, {}, volumes_of(e.regions));
     mark_regions(e.regions, 1, mesh);
@@ -307,11 +306,11 @@ Question question(const PreparedCase& prepared, const IsotropicMaterial& materia
 }
 
 std::optional<Opinion> ask_calculix(const Question& q, Status& status) {
-  return q.moves ? calculix_motion(q, status) : calculix_equilibrium(q, status);
+  return q.moves() ? calculix_motion(q, status) : calculix_equilibrium(q, status);
 }
 
 std::optional<Opinion> ask_fem(const Question& q, Status& status) {
-  return q.moves ? our_motion(q, status) : our_equilibrium(q, status);
+  return q.moves() ? our_motion(q, status) : our_equilibrium(q, status);
 }
 
 }  // namespace springproof

@@ -16,13 +16,15 @@
 
 namespace springproof {
 
+/// Whether both programs are asked for the motion of a case instead of its equilibrium.
+inline bool moves_in_time(const Experiment& experiment) { return experiment.dynamics && experiment.reference.in_time; }
+
 /// One case at one Poisson's ratio, to be solved by both programs: a body of voxels by both on its three meshes of
 /// tetrahedra.
 struct Question {
   const PreparedCase& prepared;
   IsotropicMaterial material;
-  int modes;                                        ///< 0: its equilibrium, or
-  bool moves;                                       ///< its motion
+  int modes;                                        ///< 0: its equilibrium or motion
   std::vector<std::string> grids;                   ///< CalculiX', coarse to fine, in words
   std::vector<std::shared_ptr<const Mesh>> meshes;  ///< the same
   NodalVectors points;                              ///< where the displacements of both are compared [m]
@@ -30,10 +32,11 @@ struct Question {
   double time_limit;
 
   const Experiment& experiment() const { return prepared.experiment; }
+  bool moves() const { return modes == 0 && moves_in_time(experiment()); }
   bool same_meshes() const { return experiment().body.is_voxels(); }
   /// Ours has no pressures, and both integrate exactly: they solve the same equations.
   bool same_equations() const {
-    return same_meshes() && modes == 0 && !moves && experiment().kinematics == "linear" &&
+    return same_meshes() && modes == 0 && !moves() && experiment().kinematics == "linear" &&
            !calculix::needs_reduced_integration(experiment(), material);
   }
   calculix::Deck deck(int grid) const {
