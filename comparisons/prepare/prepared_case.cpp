@@ -36,22 +36,25 @@ int across(const Mesh& body, const std::string& name) {
 void choose_axes(const PreparedCase& prepared, const std::map<std::string, std::vector<int>>& held,
                  const std::vector<IsotropicMaterial>& materials, Network& network) {
   if (network.anchors.empty()) return;
+  const std::vector<std::shared_ptr<const Mesh>>& body = prepared.body.tetrahedra;
   std::map<int, int> axes, walls;  // of a node
   for (const Load& load : prepared.loads) {
     if (!prescribes_displacement(load)) continue;
     const PrescribedValue value = prescribed_displacement(load, Vec3::Zero(), Kinematics::linear);
-    const int wall = across(*prepared.body.tetrahedra.back(), *patch_of(load));
+    const int wall = body.empty() ? 0 : across(*body.back(), *patch_of(load));  // a file's cells may be in a block
     for (const int node : held.at(*patch_of(load))) {
       for (int d = 0; d < 3; ++d) axes[node] |= int(value[d].has_value()) << d;
       walls[node] = wall;
     }
   }
-  std::map<Hexahedron, std::size_t> cells;
-  for (std::size_t c = 0; c < network.cells.size(); ++c) cells[network.cells.corners[c]] = c;
+  std::map<Hexahedron, int> material_of;  // of cells that are of another than the body's own
+  for (std::size_t c = 0; c < network.cells.materials.size(); ++c)
+    material_of[network.cells.corners[c]] = network.cells.material(c);
   for (Anchor& a : network.anchors) {
     a.axes = axes.at(a.node);
     if (a.axes != walls.at(a.node)) continue;
-    const IsotropicMaterial& m = materials[network.cells.material(cells.at(a.corners))];
+    const auto own = material_of.find(a.corners);
+    const IsotropicMaterial& m = materials[own == material_of.end() ? 0 : own->second];
     a.stiffness *= (lame_lambda(m) + 2 * shear_modulus(m)) / m.youngs_modulus;
   }
 }

@@ -127,10 +127,10 @@ Json moduli_json(const IsotropicMaterial& m) {
 }
 
 Json region_json(const SpringsRegion& region) {
-  Json json = {{"name", region.name}};
-  json.update(moduli_json(region.material));
-  json["density_kg_m3"] = region.material.density;
-  return json;
+  Json out = {{"name", region.name}};
+  out.update(moduli_json(region.material));
+  out["density_kg_m3"] = region.material.density;
+  return out;
 }
 
 /// Moments of the filled parts (meshes/voxels/filled_part.h).
