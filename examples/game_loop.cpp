@@ -32,10 +32,10 @@ Shaken shaken(double time, double size) {
 Eigen::VectorXd support_mass(const std::vector<Anchor>& anchors, Eigen::Index nodes, double dt) {
   Eigen::VectorXd mass = Eigen::VectorXd::Zero(nodes);
   for (const Anchor& anchor : anchors) {
+    const double k = anchor.stiffness.cwiseAbs().rowwise().sum().maxCoeff();
     double sum = 0;
     for (const double w : anchor.weights) sum += std::abs(w);
-    for (int c = 0; c < 8; ++c)
-      mass[anchor.corners[c]] += dt * dt / 4 * anchor.stiffness * std::abs(anchor.weights[c]) * sum;
+    for (int c = 0; c < 8; ++c) mass[anchor.corners[c]] += dt * dt / 4 * k * std::abs(anchor.weights[c]) * sum;
   }
   return mass;
 }
@@ -46,7 +46,8 @@ void add_support(const std::vector<Anchor>& anchors, const NodalVectors& X, cons
     Vec3 d = -moved;
     for (int c = 0; c < 8; ++c)
       d += anchor.weights[c] * (x.row(anchor.corners[c]) - X.row(anchor.corners[c])).transpose();
-    for (int c = 0; c < 8; ++c) f.row(anchor.corners[c]) -= anchor.stiffness * anchor.weights[c] * d.transpose();
+    const Vec3 force = anchor.stiffness * d;
+    for (int c = 0; c < 8; ++c) f.row(anchor.corners[c]) -= anchor.weights[c] * force.transpose();
   }
 }
 

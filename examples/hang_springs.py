@@ -12,7 +12,7 @@ try:
     import numpy as np, scipy.sparse as sp
     from scipy.sparse.linalg import splu
 except ImportError as missing: sys.exit(f"{missing}: needs NumPy and SciPy (Debian: apt-get install python3-numpy python3-scipy)")
-from springs import load, forces, carry, embed  # or, with the package: from springproof.springs import ...
+from springs import load, forces, carry, embed, matrices  # or, with the package: from springproof.springs import ...
 
 def colours_of(s, n):
     """Nodes of one colour move no force in common: the tangent takes six evaluations of the forces per colour."""
@@ -45,12 +45,13 @@ def tangent(s, x, colour, reach, h):
 def rest(s, held, external, say=print):
     """Positions at which the forces are in equilibrium with the external ones [N], n x 3."""
     X, n = s["nodes"]["position_m"], len(s["nodes"]["position_m"])
-    free, support = s["nodes"]["mass_kg"] > 0, sp.csr_matrix((n, n))
+    free, support = s["nodes"]["mass_kg"] > 0, sp.csr_matrix((3 * n, 3 * n))
     if held in s.get("anchors", {}):  # springs between means of corners and points that stay
         a = s["anchors"][held]
         w = sp.csr_matrix((a["weights"].ravel(), (np.arange(a["nodes"].size) // 8, a["nodes"].ravel())), (len(a["nodes"]), n))
         if "carried" in s: w = w @ sp.csr_matrix(carry(s, np.eye(n)))
-        support = w.T @ sp.diags(a["stiffness_N_m"]) @ w
+        w = sp.kron(w, sp.identity(3), format="csr")
+        support = w.T @ sp.block_diag(matrices(a), format="csr") @ w
     else:
         free = free & ~np.isin(np.arange(n), s["patches"][held])
     (colour, reach), dofs, x, largest = colours_of(s, n), np.flatnonzero(np.repeat(free, 3)), X.copy(), abs(external).max()
@@ -58,10 +59,10 @@ def rest(s, held, external, say=print):
     small = max(1e-9 * largest, 1e-14 * abs(K).max() * np.ptp(X))  # a light load on a stiff body: round-off of the forces
     def newton(x, share):  # None: no equilibrium found from here
         for _ in range(12):
-            r = (forces(s, x) + share * external - support @ (x - X)).ravel()[dofs]
+            r = ((forces(s, x) + share * external).ravel() - support @ (x - X).ravel())[dofs]
             say(f"  {share:.3f} of the load: residual {abs(r).max() / largest:.1e}")
             if not small < abs(r).max() < 1e3 * largest: return x if abs(r).max() <= small else None
-            K = (tangent(s, x, colour, reach, 1e-6 * np.ptp(X)) + sp.kron(support, sp.identity(3))).tocsc()
+            K = (tangent(s, x, colour, reach, 1e-6 * np.ptp(X)) + support).tocsc()
             x = x.copy()
             x.ravel()[dofs] += splu(K[dofs][:, dofs]).solve(r)
             carry(s, x)

@@ -479,29 +479,35 @@ static double sp_averaged(size_t cells, const int* nodes, double edge, struct sp
   return sp_averaged_cut(cells, nodes, edge, full, law, x, f);
 }
 
-/* Anchors by which a support holds a patch: W = k/2 |sum_a w_a x_a - point|^2, anchors.NAME of the file.  nodes,
- * weights: count x 8; points: where they are held. */
-static double sp_anchors(size_t count, const int* nodes, const double* weights, const double* k, const double* points,
+/* Anchors by which a support holds a patch: W = d.K d/2, d = sum_a w_a x_a - point, anchors.NAME of the file.  nodes,
+ * weights: count x 8; K: count x 9; points: where they are held. */
+static double sp_anchors(size_t count, const int* nodes, const double* weights, const double* K, const double* points,
                          const double* x, double* f) {
   double energy = 0;
-  for (size_t a = 0; a < count; ++a)
+  for (size_t a = 0; a < count; ++a) {
+    double d[3];
     for (int c = 0; c < 3; ++c) {
-      double d = -points[3 * a + c];
-      for (size_t n = 8 * a; n < 8 * a + 8; ++n) d += weights[n] * x[3 * nodes[n] + c];
-      energy += 0.5 * k[a] * d * d;
-      for (size_t n = 8 * a; f && n < 8 * a + 8; ++n) f[3 * nodes[n] + c] -= k[a] * weights[n] * d;
+      d[c] = -points[3 * a + c];
+      for (size_t n = 8 * a; n < 8 * a + 8; ++n) d[c] += weights[n] * x[3 * nodes[n] + c];
     }
+    for (int c = 0; c < 3; ++c) {
+      const double force = K[9 * a + 3 * c] * d[0] + K[9 * a + 3 * c + 1] * d[1] + K[9 * a + 3 * c + 2] * d[2];
+      energy += 0.5 * force * d[c];
+      for (size_t n = 8 * a; f && n < 8 * a + 8; ++n) f[3 * nodes[n] + c] -= weights[n] * force;
+    }
+  }
   return energy;
 }
 
 /* Adds to `mass` what the anchors of a support have of it in steps of dt: sp_step divides by it, gravity does not act
  * on it.  Of a support that moves, its acceleration times this is one more force. */
-static void sp_support_mass(size_t count, const int* nodes, const double* weights, const double* k, double dt,
+static void sp_support_mass(size_t count, const int* nodes, const double* weights, const double* K, double dt,
                             double* mass) {
   for (size_t a = 0; a < count; ++a) {
-    double sum = 0;
+    double sum = 0, k = 0;
+    for (size_t r = 9 * a; r < 9 * a + 9; r += 3) k = fmax(k, fabs(K[r]) + fabs(K[r + 1]) + fabs(K[r + 2]));
     for (size_t n = 8 * a; n < 8 * a + 8; ++n) sum += fabs(weights[n]);
-    for (size_t n = 8 * a; n < 8 * a + 8; ++n) mass[nodes[n]] += dt * dt / 4 * k[a] * fabs(weights[n]) * sum;
+    for (size_t n = 8 * a; n < 8 * a + 8; ++n) mass[nodes[n]] += dt * dt / 4 * k * fabs(weights[n]) * sum;
   }
 }
 

@@ -207,8 +207,12 @@ def anchor(s, name, x, displacement=0):
     """Forces by which a support holds the patch of a body of cut cells [N], n x 3."""
     a, f = s["anchors"][name], np.zeros(x.shape)
     d = np.einsum("ca,cai->ci", a["weights"], carry(s, x.copy())[a["nodes"]]) - a["position_m"] - displacement
-    np.add.at(f, a["nodes"], -(a["stiffness_N_m"][:, None] * a["weights"])[:, :, None] * d[:, None, :])
+    np.add.at(f, a["nodes"], -np.einsum("ca,cij,cj->cai", a["weights"], matrices(a), d))
     return hand_back(s, f)
+
+def matrices(a):  # of anchors or bonds; of anchors in files before version 7 a number each
+    K = a["stiffness_N_m"]
+    return K.reshape(-1, 3, 3) if K.ndim > 1 else K[:, None, None] * np.eye(3)
 
 def time_step(s): return 0.95 * s["derived"]["safe_time_step_s"]
 
@@ -217,7 +221,7 @@ def support_mass(s, name):
     no damping.  Of a support that moves, its acceleration times this is one more force."""
     a, mu = s["anchors"][name], np.zeros(len(s["nodes"]["mass_kg"]))
     w = abs(a["weights"])
-    np.add.at(mu, a["nodes"], time_step(s)**2 / 4 * a["stiffness_N_m"][:, None] * w * w.sum(axis=1, keepdims=True))
+    np.add.at(mu, a["nodes"], time_step(s)**2 / 4 * abs(matrices(a)).sum(axis=2).max(axis=1)[:, None] * w * w.sum(axis=1, keepdims=True))
     return hand_back(s, mu)
 
 def carry(s, x):  # carried nodes into their places

@@ -59,7 +59,7 @@ std::string line_of(const CutBody& coarse, const Mesh& body, const std::vector<s
 }
 
 // File format: the heading (problem/files/checked_file.h), the key, and these numbers in the machine's bytes.
-const KeptKind kept_cells = {"cells", ".bin", "springproof measured cells 2 "};
+const KeptKind kept_cells = {"cells", ".bin", "springproof measured cells 3 "};
 
 std::string content_of(const MeasuredBody& measured) {
   const std::array<double, 3> head = {static_cast<double>(measured.as_averaged), measured.error,

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
-
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -18,45 +16,20 @@ namespace springproof {
 
 namespace {
 
-/// Bits of the axes across which a patch lies: one, if it is flat and in a plane of the axes.
-int across(const Mesh& body, const std::string& name) {
-  Eigen::AlignedBox3d box;
-  for (const auto& facet : patch(body, name).facets)
-    for (const int n : facet)
-      if (n >= 0) box.extend(Vec3(body.nodes.row(n).transpose()));
-  int axes = 0;
-  for (int d = 0; d < 3; ++d) axes |= int(box.sizes()[d] <= 1e-9 * box.diagonal().norm()) << d;
-  return axes;
-}
-
-/// Lets anchors act along the axes along which the loads hold their patch.  A flat wall on which the body slides holds
-/// a strain across it alone, so that lambda + 2 G takes the place of E in the stiffness of its anchors: between walls
-/// all around, a body near nu = 1/2 would give way by them and not by itself.
-/// @param materials of the cells, by their number
-void choose_axes(const PreparedCase& prepared, const std::map<std::string, std::vector<int>>& held,
-                 const std::vector<IsotropicMaterial>& materials, Network& network) {
+/// Lets anchors act along the axes along which the loads hold their patch.
+void release_axes(const std::vector<Load>& loads, const std::map<std::string, std::vector<int>>& held,
+                  Network& network) {
   if (network.anchors.empty()) return;
-  const std::vector<std::shared_ptr<const Mesh>>& body = prepared.body.tetrahedra;
-  std::map<int, int> axes, walls;  // of a node
-  for (const Load& load : prepared.loads) {
+  std::map<int, int> axes;  // of a node, in bits
+  for (const Load& load : loads) {
     if (!prescribes_displacement(load)) continue;
     const PrescribedValue value = prescribed_displacement(load, Vec3::Zero(), Kinematics::linear);
-    const int wall = body.empty() ? 0 : across(*body.back(), *patch_of(load));  // a file's cells may be in a block
-    for (const int node : held.at(*patch_of(load))) {
+    for (const int node : held.at(*patch_of(load)))
       for (int d = 0; d < 3; ++d) axes[node] |= int(value[d].has_value()) << d;
-      walls[node] = wall;
-    }
   }
-  std::map<Hexahedron, int> material_of;  // of cells that are of another than the body's own
-  for (std::size_t c = 0; c < network.cells.materials.size(); ++c)
-    material_of[network.cells.corners[c]] = network.cells.material(c);
-  for (Anchor& a : network.anchors) {
-    a.axes = axes.at(a.node);
-    if (a.axes != walls.at(a.node)) continue;
-    const auto own = material_of.find(a.corners);
-    const IsotropicMaterial& m = materials[own == material_of.end() ? 0 : own->second];
-    a.stiffness *= (lame_lambda(m) + 2 * shear_modulus(m)) / m.youngs_modulus;
-  }
+  for (Anchor& a : network.anchors)
+    for (int d = 0; d < 3; ++d)
+      if ((axes.at(a.node) >> d & 1) == 0) a.release(d);
 }
 
 /// @throws InputError unless the file has, of each patch of the loads, what the case needs.
@@ -153,9 +126,7 @@ EmbeddedModel build_on(const PreparedCase& prepared, const Lattice& lattice, con
   for (const Load& load : prepared.loads)
     if (prescribes_displacement(load)) held.insert(*patch_of(load));
   EmbeddedModel built = built_on(prepared, lattice, parameters, held, material, in_motion);
-  std::vector<IsotropicMaterial> materials = materials_of(prepared.experiment.regions);
-  materials.insert(materials.begin(), material);
-  choose_axes(prepared, built.embedding.held, materials, built.model.network);
+  release_axes(prepared.loads, built.embedding.held, built.model.network);
   attach_masses(prepared.experiment, *lattice.mesh, built);
   if (in_motion && takes_explicit_steps(prepared.experiment.dynamics)) soften_bonds(built.model, material.density);
   if (in_motion && held.empty()) {  // in flight all nodes fall alike

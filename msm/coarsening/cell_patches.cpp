@@ -112,7 +112,7 @@ void CellPatches::add_bonds() {
   bonds_of_.resize(fine_.in.size());
   reaches_.resize(fine_.in.size(), 0);
   for (std::size_t b = 0; b < bonds_.size(); ++b) {
-    const auto& sides = fine_.body.interfaces[b / anchors_of_part].sides;
+    const auto& sides = fine_.body.interfaces[b / bonds_of_part].sides;
     bonds_of_[sides[0].cell].push_back(static_cast<int>(b));
     if (fine_.body.cells[sides[0].cell].index != fine_.body.cells[sides[1].cell].index) reaches_[sides[0].cell] = 1;
   }
@@ -125,9 +125,7 @@ void CellPatches::add_supports(const std::vector<std::string>& held) {
     const std::vector<Anchor> anchors = anchors_of_patch(fine_.body, name, materials_of(law_));
     for (std::size_t a = 0; a < anchors.size(); ++a) {
       const int cell = parts[a / anchors_of_part].cell;
-      const Eigen::Map<const Eigen::Matrix<double, 8, 1>> w(anchors[a].weights.data());
-      anchors_.try_emplace(cell, Eigen::Matrix<double, 8, 8>::Zero()).first->second +=
-          anchors[a].stiffness * w * w.transpose();
+      anchors_[cell].push_back(anchors[a]);
       for (const int n : fine_.body.cells[cell].corners) at_support_[n] = 1;
     }
   }
@@ -168,7 +166,8 @@ void CellPatches::each_coupling(const Patch& patch, const FineNodes& nodes, cons
     for (int m = 0; m < 8; ++m)
       for (int n = 0; n < 8; ++n) {
         Eigen::Matrix3d block = k.block<3, 3>(3 * m, 3 * n);
-        if (anchors != anchors_.end()) block.diagonal().array() += anchors->second(m, n);
+        if (anchors != anchors_.end())
+          for (const Anchor& a : anchors->second) block += a.weights[m] * a.weights[n] * a.stiffness;
         act(nodes.corners[f][m], nodes.corners[f][n], block);
       }
     for (const int b : bonds_of_[patch.fine[f]]) each_of_bond(bonds_[b], nodes, act);

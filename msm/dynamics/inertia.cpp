@@ -12,11 +12,12 @@ void for_each_support_mass(const Network& network, const MotionOptions& options,
   const double dt = options.time_step.value();
   const double factor = MassAverage::largest_gain(options.mass_consistency) * dt * dt / 4;
   for (const Anchor& a : network.anchors) {
+    const double k = a.stiffness.cwiseAbs().rowwise().sum().maxCoeff();
     double sum = 0;
     for (const double w : a.weights) sum += std::abs(w);
     for (int n = 0; n < 8; ++n)
       for (int axis = 0; axis < 3; ++axis)
-        if (a.acts(axis)) act(a, n, axis, factor * a.stiffness * std::abs(a.weights[n]) * sum);
+        if (a.acts(axis)) act(a, n, axis, factor * k * std::abs(a.weights[n]) * sum);
   }
 }
 

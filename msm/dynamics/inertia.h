@@ -6,9 +6,10 @@
 
 namespace springproof {
 
-/// Support mass of the corners of anchored cells: with dt^2/4 sum_q k_q |w_qa| sum_b |w_qb| at corner a no anchor
-/// limits the step dt, as the row sums of |w| |w|^T dominate w w^T.  It has no weight and no damping of its own, and
-/// moves with the support (SupportInertia); it tends to zero with the step and changes no equilibrium.
+/// Support mass of the corners of anchored cells: with dt^2/4 sum_q k_q |w_qa| sum_b |w_qb| at corner a, k_q the
+/// largest row sum of |K_q|, no anchor limits the step dt, as the row sums of |w| |w|^T dominate w w^T.  It has no
+/// weight and no damping of its own, and moves with the support (SupportInertia); it tends to zero with the step and
+/// changes no equilibrium.
 /// @param network with anchors or without
 /// @param options with a time step, of which integrator and mass_consistency are read; zero for large steps
 /// @return [kg], n x 3: an anchor has it along the axes on which it acts

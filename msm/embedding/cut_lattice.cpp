@@ -51,10 +51,6 @@ void add_materials(const CutBody& body, const std::vector<IsotropicMaterial>& ma
 
 }  // namespace
 
-Network cut_lattice(const CutBody& body, const std::vector<std::string>& held, double youngs_modulus) {
-  return cut_lattice(body, held, std::vector<IsotropicMaterial>{{youngs_modulus, 0, 1}});
-}
-
 Network cut_lattice(const CutBody& body, const std::vector<std::string>& held,
                     const std::vector<IsotropicMaterial>& materials) {
   require_materials(body, materials.size());

@@ -11,11 +11,7 @@
 namespace springproof {
 
 /// The cells as a network: nodes are the corners of the cells, with an eighth of a cell's volume each, and those, of no
-/// volume, of the anchors of the patches `held` (supports.h).
-/// `youngs_modulus` [Pa]: of the body, for the anchors.
-Network cut_lattice(const CutBody& body, const std::vector<std::string>& held, double youngs_modulus);
-
-/// The same of a body of several materials, with its bonds (supports.h).
+/// volume, of the anchors of the patches `held`; of several materials with their bonds (supports.h).
 /// `materials`: of the cells, by their number.
 /// @throws std::invalid_argument if a cell has another material.
 Network cut_lattice(const CutBody& body, const std::vector<std::string>& held,

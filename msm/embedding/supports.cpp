@@ -38,6 +38,13 @@ struct Part {
     }
     second = (second + second.transpose()).eval() / 2;
   }
+
+  /// Weights m of the corners.
+  std::array<double, 8> mean() const {
+    std::array<double, 8> m;
+    for (int n = 0; n < 8; ++n) m[n] = of.area[n] / area;
+    return m;
+  }
 };
 
 /// Second moments of some parts in a plane: of each about its own centroid, and about the common one.
@@ -82,7 +89,7 @@ struct Gain {
 
   /// Weights of the corners of the cell of a part in its spring number q.
   std::array<double, 8> weights(const Part& part, std::size_t q) const {
-    const double theta = 2 * std::numbers::pi * static_cast<double>(q) / anchors_of_part;
+    const double theta = 2 * std::numbers::pi * static_cast<double>(q) / bonds_of_part;
     std::array<double, 8> w;
     for (int n = 0; n < 8; ++n) {
       const Eigen::Vector2d G = gain * (plane.transpose() * part.first[n]);
@@ -106,16 +113,22 @@ std::vector<std::vector<int>> parts_nearby(const std::vector<Part>& parts) {
   return near;
 }
 
+Vec3 mean_normal(const Part& part) {
+  return std::accumulate(part.of.normal.begin(), part.of.normal.end(), Vec3(0, 0, 0)) / part.area;
+}
+
+/// Of a confined strain [Pa]: lambda + 2 G.
+double modulus_across(const IsotropicMaterial& m) { return lame_lambda(m) + 2 * shear_modulus(m); }
+
 double harmonic_mean(double a, double b) { return 2 / (1 / a + 1 / b); }
 
 /// Of an interface between two materials, times the edge of the cell [N].
 Eigen::Matrix3d bond_stiffness(const Part& part, const IsotropicMaterial& a, const IsotropicMaterial& b) {
-  const auto across = [](const IsotropicMaterial& m) { return lame_lambda(m) + 2 * shear_modulus(m); };
   const double along = harmonic_mean(a.youngs_modulus, b.youngs_modulus);
   Eigen::Matrix3d K = along * Eigen::Matrix3d::Identity();
   if (std::max(a.poisson_ratio, b.poisson_ratio) > confined_above) {
-    const Vec3 normal = std::accumulate(part.of.normal.begin(), part.of.normal.end(), Vec3(0, 0, 0)) / part.area;
-    K += (harmonic_mean(across(a), across(b)) - along) * normal * normal.transpose();
+    const Vec3 n = mean_normal(part);
+    K += (harmonic_mean(modulus_across(a), modulus_across(b)) - along) * n * n.transpose();
   }
   return anchor_stiffness * part.area * K;
 }
@@ -129,10 +142,6 @@ void require_materials(const CutBody& body, std::size_t materials) {
                                               materials, materials == 1 ? "material is" : "materials are"));
 }
 
-std::vector<Anchor> anchors_of_patch(const CutBody& body, const std::string& patch, double youngs_modulus) {
-  return anchors_of_patch(body, patch, std::vector<IsotropicMaterial>{{youngs_modulus, 0, 1}});
-}
-
 std::vector<Anchor> anchors_of_patch(const CutBody& body, const std::string& patch,
                                      const std::vector<IsotropicMaterial>& materials) {
   require_materials(body, materials.size());
@@ -144,14 +153,14 @@ std::vector<Anchor> anchors_of_patch(const CutBody& body, const std::string& pat
     const Part& part = parts[p];
     const double edge = body.grid.edge * part.cell.size;
     const Gain gain(parts, static_cast<int>(p), near[p], edge);
-    for (std::size_t q = 0; q < anchors_of_part; ++q) {
-      Anchor& anchor = anchors.emplace_back();
-      anchor.corners = part.cell.corners;
-      anchor.node = -1;
-      anchor.stiffness =
-          anchor_stiffness / anchors_of_part * materials[part.cell.material].youngs_modulus * part.area / edge;
-      anchor.weights = gain.weights(part, q);
-    }
+    const IsotropicMaterial& material = materials[part.cell.material];
+    const double k = anchor_stiffness * part.area / edge;
+    for (std::size_t q = 0; q < bonds_of_part; ++q)
+      anchors.push_back({part.cell.corners, gain.weights(part, q), -1,
+                         k / bonds_of_part * material.youngs_modulus * Eigen::Matrix3d::Identity()});
+    const Vec3 n = mean_normal(part);
+    anchors.push_back({part.cell.corners, part.mean(), -1,
+                       k * (modulus_across(material) - material.youngs_modulus) * n * n.transpose()});
   }
   return anchors;
 }
@@ -170,10 +179,10 @@ std::vector<InterfaceBond> bonds_of_interfaces(const CutBody& body, const std::v
     const double edge = body.grid.edge * std::max(first.cell.size, second.cell.size);
     const Gain gain(parts[0], static_cast<int>(p), either, edge);
     const Eigen::Matrix3d K = bond_stiffness(first, materials[first.cell.material], materials[second.cell.material]);
-    for (std::size_t q = 0; q < anchors_of_part; ++q)
+    for (std::size_t q = 0; q < bonds_of_part; ++q)
       bonds.push_back({{first.cell.corners, second.cell.corners},
                        {gain.weights(first, q), gain.weights(second, q)},
-                       K / (edge * anchors_of_part)});
+                       K / (edge * bonds_of_part)});
   }
   return bonds;
 }

@@ -14,14 +14,35 @@ namespace {
 
 constexpr double at_rest = 1e-6;  // of an edge, and of other numbers that follow from each other
 constexpr std::size_t most_regions = 255;
+constexpr const char* of_a_spring = "a symmetric matrix without negative eigenvalues, row by row";
 
-std::vector<Anchor> read_anchors(const JsonPlace& place, const Network& network) {
+/// Whether it is symmetric without negative eigenvalues.
+bool pulls_together(const Eigen::Matrix3d& K) {
+  return (K - K.transpose()).cwiseAbs().maxCoeff() <= at_rest * K.cwiseAbs().maxCoeff() &&
+         K.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff() >= -at_rest * K.cwiseAbs().maxCoeff();
+}
+
+/// A number each before the version of stiff walls.
+std::vector<Eigen::Matrix3d> read_stiffness(const JsonPlace& place, double version, std::size_t count) {
+  std::vector<Eigen::Matrix3d> all;
+  const bool of_walls = version >= springs_version_of_stiff_walls;
+  const std::vector<double> numbers =
+      of_walls ? place.numbers(9, count, "weights") : place.numbers(1, count, "weights", 0);
+  for (std::size_t a = 0; a < count; ++a) {
+    all.push_back(of_walls ? Eigen::Matrix3d(Eigen::Map<const Eigen::Matrix3d>(&numbers[9 * a]))
+                           : Eigen::Matrix3d(numbers[a] * Eigen::Matrix3d::Identity()));
+    if (!pulls_together(all.back())) place.refuse(fmt::format("anchor {} pushes apart", a), of_a_spring);
+  }
+  return all;
+}
+
+std::vector<Anchor> read_anchors(const JsonPlace& place, double version, const Network& network) {
   place.require_known({"position_m", "nodes", "weights", "stiffness_N_m"});
-  const std::vector<double> stiffness = place.at("stiffness_N_m").numbers(1, 0, nullptr, 0);
-  const std::size_t count = stiffness.size();
-  const std::vector<int> nodes = place.at("nodes").integers(8, network.nodes() - 1, count, "constants");
-  const std::vector<double> weights = place.at("weights").numbers(8, count, "constants"),
-                            position = place.at("position_m").numbers(3, count, "constants");
+  const std::vector<int> nodes = place.at("nodes").integers(8, network.nodes() - 1);
+  const std::size_t count = nodes.size() / 8;
+  const std::vector<double> weights = place.at("weights").numbers(8, count, "nodes"),
+                            position = place.at("position_m").numbers(3, count, "nodes");
+  const std::vector<Eigen::Matrix3d> stiffness = read_stiffness(place.at("stiffness_N_m"), version, count);
   std::vector<Anchor> anchors(count);
   for (std::size_t a = 0; a < count; ++a) {
     std::copy_n(&nodes[8 * a], 8, anchors[a].corners.begin());
@@ -86,10 +107,7 @@ void require_bond(const InterfaceBond& bond, std::size_t number, const JsonPlace
       refuse("weights", "has weights that do not sum to 1", "eight of each cell that sum to 1");
   if (gap(bond, network.X).cwiseAbs().maxCoeff() > at_rest * network.cells.edge)
     refuse("weights", "is stretched at rest", "means of both cells at the same point");
-  const Eigen::Matrix3d& K = bond.stiffness;
-  if ((K - K.transpose()).cwiseAbs().maxCoeff() > at_rest * K.cwiseAbs().maxCoeff() ||
-      !(K.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff() >= 0))
-    refuse("stiffness_N_m", "pushes apart", "a symmetric matrix without negative eigenvalues, row by row");
+  if (!pulls_together(bond.stiffness)) refuse("stiffness_N_m", "pushes apart", of_a_spring);
 }
 
 PatchShares read_load(const JsonPlace& place, int nodes_of_network) {
@@ -211,10 +229,11 @@ void read_materials(const JsonPlace& document, double version, SpringsFile& file
   }
 }
 
-void read_supports_and_loads(const JsonPlace& document, SpringsFile& file) {
+void read_supports_and_loads(const JsonPlace& document, double version, SpringsFile& file) {
   const Network& network = file.model.network;
   if (const auto anchors = document.find("anchors"))
-    for (const std::string& name : anchors->keys()) file.anchors[name] = read_anchors(anchors->at(name), network);
+    for (const std::string& name : anchors->keys())
+      file.anchors[name] = read_anchors(anchors->at(name), version, network);
   if (const auto loads = document.find("loads"))
     for (const std::string& name : loads->keys()) file.loads[name] = read_load(loads->at(name), network.nodes());
   if (const auto weight = document.at("nodes").find("weight_kg")) {

@@ -30,6 +30,6 @@ void read_materials(const JsonPlace& document, double version, SpringsFile& file
 
 /// `anchors` and `loads` of the document and `weight_kg` of its nodes.
 /// @throws InputError also if an anchor is not at rest.
-void read_supports_and_loads(const JsonPlace& document, SpringsFile& file);
+void read_supports_and_loads(const JsonPlace& document, double version, SpringsFile& file);
 
 }  // namespace springproof

@@ -187,7 +187,7 @@ std::vector<Spring> read_springs_of(const JsonPlace& document, const NodalVector
 }
 
 double version_of(const JsonPlace& document) {
-  return document.at("version").number(springs_version, springs_version_of_branches);
+  return document.at("version").number(springs_version, springs_version_of_stiff_walls);
 }
 
 void read_cells(const JsonPlace& document, Network& network) {
@@ -384,7 +384,7 @@ void require_format(const JsonPlace& document) {
   if (const auto format = document.find("format"); !format || format->text() != springs_format)
     document.refuse("is no springs file", fmt::format("\"format\": \"{}\"", springs_format));
   if (const double version = version_of(document); version != std::floor(version))
-    document.at("version").refuse("is no whole number", "1 to 6");
+    document.at("version").refuse("is no whole number", "1 to 7");
   document.require_known({"format", "version",   "origin",  "material",  "density_kg_m3", "regions",
                           "grip_m", "grip_from", "derived", "laws",      "nodes",         "springs",
                           "cells",  "bonds",     "carried", "triangles", "patches",       "anchors",
@@ -416,7 +416,7 @@ SpringsFile read_document(const JsonPlace& document) {
   read_relaxation(document, file);
   require_rest(document, file.model);
   read_patches(document, file);
-  read_supports_and_loads(document, file);
+  read_supports_and_loads(document, version_of(document), file);
   read_surface(document, file);
   return file;
 }

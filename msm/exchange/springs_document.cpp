@@ -245,12 +245,12 @@ void add_anchors(const std::string& patch, const std::vector<Anchor>& anchors, c
     points.row(static_cast<Eigen::Index>(corners.size())) = anchored_point(a, X).transpose();
     corners.push_back(a.corners);
     weights.insert(weights.end(), a.weights.begin(), a.weights.end());
-    stiffness.push_back(a.stiffness);
+    stiffness.insert(stiffness.end(), a.stiffness.data(), a.stiffness.data() + 9);
   }
   out.vectors({"anchors", patch, "position_m"}, points);
   out.rows({"anchors", patch, "nodes"}, corners);
   out.array<double>({"anchors", patch, "weights"}, {anchors.size(), 8}, std::move(weights));
-  out.numbers({"anchors", patch, "stiffness_N_m"}, std::move(stiffness));
+  out.array<double>({"anchors", patch, "stiffness_N_m"}, {anchors.size(), 9}, std::move(stiffness));
 }
 
 void add_load(const std::string& patch, const PatchShares& shares, DocumentWriter& out) {
@@ -324,6 +324,7 @@ void add_check_of_branches(const SpringsFile& springs, const NodalVectors& x, Do
 }
 
 int version_of(const SpringsFile& springs) {
+  if (!springs.anchors.empty()) return springs_version_of_stiff_walls;
   if (springs.relaxing.acts()) return springs_version_of_branches;
   const CellSet& cells = springs.model.network.cells;
   if (!cells.materials.empty()) return springs_version_of_materials;

@@ -50,6 +50,7 @@ std::string key_of_law(const LawTraits& traits);
 
 inline constexpr const char* springs_format = "springproof springs";
 inline constexpr int springs_version = 1, springs_version_of_cut_cells = 2, springs_version_of_several_sizes = 3,
-                     springs_version_of_boxes = 4, springs_version_of_materials = 5, springs_version_of_branches = 6;
+                     springs_version_of_boxes = 4, springs_version_of_materials = 5, springs_version_of_branches = 6,
+                     springs_version_of_stiff_walls = 7;
 
 }  // namespace springproof

@@ -105,8 +105,8 @@ void CellForces<Real>::store_anchors(const Network& network) {
     }
     held.node = order_.place[a.node];
     for (int d = 0; d < 3; ++d) {
-      held.stiffness[d] = a.acts(d) ? static_cast<Real>(a.stiffness) : Real(0);
       held.stretch[d] = static_cast<Real>(stretch[d]);
+      for (int e = 0; e < 3; ++e) held.stiffness[d][e] = static_cast<Real>(a.stiffness(d, e));
     }
     anchors_.push_back(held);
   }
@@ -175,10 +175,14 @@ void CellForces<Real>::add_anchors(long begin, long end, const Padded<Real>* x, 
   if (anchors_.empty()) return;
   for (int number = order_.first_anchor[begin]; number < order_.first_anchor[end]; ++number) {
     const Held& a = anchors_[number];
+    Real stretch[3];
     for (int d = 0; d < 3; ++d) {
-      Real stretch = a.stretch[d] - x[a.node].v[d];
-      for (int n = 0; n < 8; ++n) stretch += a.weights[n] * x[a.corners[n]].v[d];
-      const Real force = a.stiffness[d] * stretch;
+      stretch[d] = a.stretch[d] - x[a.node].v[d];
+      for (int n = 0; n < 8; ++n) stretch[d] += a.weights[n] * x[a.corners[n]].v[d];
+    }
+    for (int d = 0; d < 3; ++d) {
+      const Real force =
+          a.stiffness[d][0] * stretch[0] + a.stiffness[d][1] * stretch[1] + a.stiffness[d][2] * stretch[2];
       f[a.node].v[d] += force;
       for (int n = 0; n < 8; ++n) f[a.corners[n]].v[d] -= a.weights[n] * force;
     }

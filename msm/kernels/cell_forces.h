@@ -47,7 +47,7 @@ class CellForces : public BlockForces<Real> {
   /// At places, with what its spring is stretched by at rest.
   struct Held {
     int corners[8], node;
-    Real weights[8], stiffness[3], stretch[3];  ///< [1], [N/m], [m]
+    Real weights[8], stiffness[3][3], stretch[3];  ///< [1], [N/m], [m]
   };
 
   /// The same of a bond of two cells.

@@ -8,8 +8,6 @@ namespace {
 Vec3 stretch(const Anchor& a, const NodalVectors& x) {
   Vec3 d = -x.row(a.node).transpose();
   for (int n = 0; n < 8; ++n) d += a.weights[n] * x.row(a.corners[n]).transpose();
-  for (int axis = 0; axis < 3; ++axis)
-    if (!a.acts(axis)) d[axis] = 0;
   return d;
 }
 
@@ -31,7 +29,10 @@ void add_tangent_of(const TurnedBond& at, const Eigen::Matrix3d& stiffness, Bloc
 
 double Anchors::energy(const Network& network, const NodalVectors& x) const {
   double sum = 0;
-  for (const Anchor& a : network.anchors) sum += a.stiffness / 2 * stretch(a, x).squaredNorm();
+  for (const Anchor& a : network.anchors) {
+    const Vec3 d = stretch(a, x);
+    sum += d.dot(a.stiffness * d) / 2;
+  }
   for (const InterfaceBond& b : network.bonds) {
     const Vec3 v = turns(b) ? TurnedBond(b, network.X, x).v() : gap(b, x);
     sum += v.dot(b.stiffness * v) / 2;
@@ -58,13 +59,11 @@ void Anchors::add_forces(const Network& network, const NodalVectors& x, NodalVec
 
 void Anchors::add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const {
   for (const Anchor& a : network.anchors) {
-    Eigen::Matrix3d I = Eigen::Matrix3d::Zero();
-    for (int axis = 0; axis < 3; ++axis) I(axis, axis) = a.acts(axis);
-    K.add(a.node, a.node, a.stiffness * I);
+    K.add(a.node, a.node, a.stiffness);
     for (int m = 0; m < 8; ++m) {
-      K.add(a.node, a.corners[m], -a.stiffness * a.weights[m] * I);
-      K.add(a.corners[m], a.node, -a.stiffness * a.weights[m] * I);
-      for (int n = 0; n < 8; ++n) K.add(a.corners[m], a.corners[n], a.stiffness * a.weights[m] * a.weights[n] * I);
+      K.add(a.node, a.corners[m], -a.weights[m] * a.stiffness);
+      K.add(a.corners[m], a.node, -a.weights[m] * a.stiffness);
+      for (int n = 0; n < 8; ++n) K.add(a.corners[m], a.corners[n], a.weights[m] * a.weights[n] * a.stiffness);
     }
   }
   for (const InterfaceBond& b : network.bonds)

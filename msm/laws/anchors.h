@@ -8,9 +8,9 @@
 
 namespace springproof {
 
-/// Energy sum k/2 |sum_a w_a x_a - x_node|^2 over Network::anchors and sum g.K g/2 over Network::bonds: springs of rest
-/// length zero, so the energy is quadratic, but of bonds that turn (turned_bond.h).  That of bonds is the same in every
-/// frame.
+/// Energy sum d.K d/2, d = sum_a w_a x_a - x_node, over Network::anchors and sum g.K g/2 over Network::bonds: springs
+/// of rest length zero, so the energy is quadratic, but of bonds that turn (turned_bond.h).  That of bonds is the same
+/// in every frame.
 struct Anchors {
   /// What solvers, kernels and the time step use of this law.
   static constexpr LawTraits traits = {

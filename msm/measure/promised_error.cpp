@@ -65,10 +65,9 @@ std::vector<double> anchor_energies(const Network& network, const NodalVectors& 
   for (std::size_t c = 0; c < network.cells.size(); ++c) cell_of[network.cells.corners[c]] = c;
   std::vector<double> energies(network.cells.size());
   for (const Anchor& anchor : network.anchors) {
-    Eigen::RowVector3d gap = -u.row(anchor.node);
-    for (int n = 0; n < 8; ++n) gap += anchor.weights[n] * u.row(anchor.corners[n]);
-    for (int axis = 0; axis < 3; ++axis)
-      if (anchor.acts(axis)) energies[cell_of.at(anchor.corners)] += anchor.stiffness / 2 * gap[axis] * gap[axis];
+    Vec3 gap = -u.row(anchor.node).transpose();
+    for (int n = 0; n < 8; ++n) gap += anchor.weights[n] * u.row(anchor.corners[n]).transpose();
+    energies[cell_of.at(anchor.corners)] += gap.dot(anchor.stiffness * gap) / 2;
   }
   for (const InterfaceBond& bond : network.bonds) {
     const Vec3 g = gap(bond, u);

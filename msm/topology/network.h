@@ -9,15 +9,20 @@
 namespace springproof {
 
 /// Spring of rest length zero between a weighted mean of the corners of a cell and a node, by which a support holds the
-/// part of a patch in that cell: energy k/2 |sum_a w_a x_a - x_node|^2.
+/// part of a patch in that cell: energy d.K d/2, d = sum_a w_a x_a - x_node.
 struct Anchor {
   Hexahedron corners;             ///< nodes of the cell
   std::array<double, 8> weights;  ///< they sum to 1
   int node;                       ///< held by the support
-  double stiffness;               ///< k [N/m]
+  Eigen::Matrix3d stiffness;      ///< K [N/m], symmetric
   int axes = 7;                   ///< bits of the axes along which it acts; along others its node is fixed at rest
 
   bool acts(int axis) const { return axes >> axis & 1; }
+  void release(int axis) {
+    axes &= ~(1 << axis);
+    stiffness.row(axis).setZero();
+    stiffness.col(axis).setZero();
+  }
 };
 
 /// The point that an anchor is held in at rest [m]: the mean of its corners by its weights.

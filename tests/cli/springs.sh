@@ -60,7 +60,7 @@ cp "$source/comparisons/experiments/calibration/icosahedron.stl" .
 body=(icosahedron.stl -E 5e3 --nu 0.45 --density 900 --scale 0.01 --voxels 100 --to springs)
 export_to "${body[@]}" --out cut.json
 grep -q '"model": "hybmss_avg"' cut.json || fail "a body alone gets another model than the recommended one"
-grep -q '"version": 2' cut.json && grep -q '"fraction": ' cut.json && grep -q '"anchors": ' cut.json || fail "a body has no cut cells"
+grep -q '"version": 7' cut.json && grep -q '"fraction": ' cut.json && grep -q '"anchors": ' cut.json || fail "a body has no cut cells"
 grep -qE 'nodes, a term per cell \(no springs, [0-9]+ cut cells\)' log && ! grep -q '^note:' log || fail "what cut cells are: $(cat log)"
 export_to "${body[@]}" --out cut.npz
 # The vertices of another file, in its order, inside of the body too: a mesh of 10^5 vertices follows the springs by the file alone.
@@ -121,7 +121,7 @@ done
       -e 's/^models = .*/models = ["hybmss_avg"]/; s/0\.25, 0\.4/0.4/' case.toml
   printf '[[patch]]\nname = "low"\nbeyond = { point_m = [0, 0, -0.005], normal = [0, 0, -1] }\n[[patch]]\nname = "high"\nbeyond = { point_m = [0, 0, 0.005], normal = [0, 0, 1] }\n'; } >refined.toml
 for form in json npz vtu; do export_to refined.toml --to springs --out "refined.$form"; done
-grep -q '"version": 3' refined.json && grep -q '"carried": ' refined.json || fail "no cells of several sizes"
+grep -q '"version": 7' refined.json && grep -q '"carried": ' refined.json || fail "no cells of several sizes"
 if [ -n "$numpy" ]; then
   for form in json npz; do
     off=$("$numpy" springs.py "refined.$form" | awk '{ print $3 }')
@@ -246,10 +246,10 @@ sed -e 's/^geo = .*/geo = "icosahedron.stl"/; s/^size_m = .*/voxels = 300\ncut =
 for model in hybmss_bt emsm_random emsm_centred; do same_rows voxels.toml $model; done
 sed '/^cut = false/d' voxels.toml >cut.toml
 same_rows cut.toml hybmss_avg
-grep -q '"version": 2' hybmss_avg.json || fail "a case of a body has no cut cells"
+grep -q '"version": 7' hybmss_avg.json || fail "a case of a body has no cut cells"
 sed 's/^voxels = .*/voxels = 30\naccuracy = 0.05/' cut.toml >several.toml
 same_rows several.toml hybmss_avg
-grep -q '"version": 3' hybmss_avg.json || fail "a refined body has no cells of several sizes"
+grep -q '"version": 7' hybmss_avg.json || fail "a refined body has no cells of several sizes"
 cp hybmss_avg.json several.json
 # Measured cells, on the supports of the case: 171 numbers of each.
 sed -e 's/^geo = .*/geo = "l_bracket.geo"/; s/^size_m = .*/size_m = [0.1, 0.05, 0.1]\nvoxel_edge_m = 0.01\ncoarsened = true/; /^cells = /d; s/x_min/wall/; s/x_max/end/' template.toml >measured.toml
@@ -291,7 +291,8 @@ for d in range(24):
         averaged(s["laws"]["averaged_springs"], apart, x.reshape(-1, 3), f[sign])
     np.add.at(K, (unknowns(cells), unknowns(cells)[:, d, None]), -(f[1] - f[-1]).reshape(-1, 24) / (2 * h))
 for nodes, w, k in zip(a["nodes"], a["weights"], a["stiffness_N_m"]):
-    for axis in range(3): K[np.ix_(3 * nodes + axis, 3 * nodes + axis)] += k * np.outer(w, w)
+    at = (3 * nodes[:, None] + np.arange(3)).ravel()
+    K[np.ix_(at, at)] += np.kron(np.outer(w, w), k.reshape(3, 3))
 u = np.linalg.solve(K, (s["nodes"]["weight_kg"][:, None] * (1, 2, -9.81)).ravel()).reshape(-1, 3)
 rows = {row["measure"]: float(row["value"]) for row in csv.DictReader(open("hang/results.csv"))}
 checked = 0
@@ -359,7 +360,7 @@ measures = ["probe", "reaction"]
 elements = []
 END
 for form in json npz; do export_to regions.toml --to springs --out "regions.$form"; done
-grep -q '"version": 5' regions.json && grep -q '"bonds": ' regions.json && grep -q '"name":"core"' regions.json || fail "no file of several materials"
+grep -q '"version": 7' regions.json && grep -q '"bonds": ' regions.json && grep -q '"name":"core"' regions.json || fail "no file of several materials"
 sed 's/"hybmss_avg"/"hybmss_avg", { file = "regions.json", label = "mine" }/' regions.toml >both.toml
 "$program" compare both.toml --out both --quiet >log 2>&1 || fail "a file of several materials as a model: $(cat log)"
 sed '/name = "core"/,/^near/s/radius_m = [0-9.e-]*/radius_m = 0.005/' both.toml >moved.toml
@@ -452,7 +453,7 @@ spoilt() {
   [ $status -eq 2 ] && [ "$(wc -l <log)" -eq 1 ] && grep -qE -- "$1" log && [ ! -e refused ] || fail "$2: status $status: $(head -c 600 log)"
 }
 spoilt 'own.toml:16:.*hybmss.json:[0-9]+:[0-9]+: not valid JSON' 's/"density_kg_m3": 1100.0/"density_kg_m3": NaN/'
-spoilt 'own.toml:16:.*hybmss.json: /version: is 7 \(allowed' 's/"version":  1/"version": 7/'
+spoilt 'own.toml:16:.*hybmss.json: /version: is 8 \(allowed' 's/"version":  1/"version": 8/'
 spoilt 'hybmss.json: /springs/nodes/0/1: is 45 \(allowed: a whole number from 0 to 44' 's/(^  "nodes": \[\[)0,[0-9]+\]/\10,45]/'
 spoilt 'hybmss.json: /springs/nodes/0/1: is 1.5 \(allowed: a whole number' 's/(^  "nodes": \[\[)0,[0-9]+\]/\10,1.5]/'
 spoilt 'hybmss.json: /nodes/mass_kg/0: is 0.0 \(allowed: a finite number >= 1e-30' 's/("mass_kg": \[)[^,]*/\10.0/'

@@ -125,7 +125,7 @@ def test_a_body_by_voxels_is_that_of_compare(tmp_path):
         value = {row["measure"]: row["value"] for row in rows if row["model"] == label}
         assert value["displacement.middle.x"] == pytest.approx(state.at([(0.03, 0.03, 0.03)])[0, 0], rel=1e-6), label
         assert value["force.top.x"] == pytest.approx(state.reactions["top"][0, 0], rel=1e-6), label
-    with pytest.raises(sp.InputError, match="7.6 % off these, averaged springs 7.1 %, which is not worth it"):
+    with pytest.raises(sp.InputError, match=r"\d % off these, averaged springs .* %, which is not worth it"):
         sp.Model("hybmss_avg", body, sp.Material(1e4, 0.3), cut=True, held=["foot"], coarsened=True)
     with pytest.raises(sp.InputError, match="coarsened: is for cut cells"):
         sp.Model("hybmss_avg", body, sp.Material(1e4, 0.3), coarsened=True)

@@ -69,7 +69,8 @@ inline Network cut_network(double edge = 0.5) {
     for (const int n : network.cells.corners[c]) network.volume[n] += part.fraction * edge * edge * edge / 8;
   }
   for (int a = 0; a < 2; ++a) {
-    Anchor anchor{network.cells.corners[a], {}, static_cast<int>(mesh.nodes.rows()) + a, 100.0};
+    Anchor anchor{
+        network.cells.corners[a], {}, static_cast<int>(mesh.nodes.rows()) + a, 100 * Eigen::Matrix3d::Identity()};
     Vec3 at = Vec3::Zero();
     for (int n = 0; n < 8; ++n) {
       anchor.weights[n] = n == a ? 0.3 : 0.1;
@@ -86,7 +87,7 @@ inline Network refined_network(double edge = 0.5) {
   const Mesh body = solid_of(block_mesh(edge * Vec3(4, 2, 1.7), {2, 1, 1}));
   VoxelGrid grid = with_halved_cubes({Vec3::Zero(), 2 * edge, {2, 1, 1}});
   halve_cell(grid, {2, 0, 0});
-  return cut_lattice(cut_body(grid, body), {"x_min"}, 100);
+  return cut_lattice(cut_body(grid, body), {"x_min"}, {{100, 0, 1}});
 }
 
 /// A sheet of 3 x 3 rhombi cut into two triangles each, nodes moved in the plane and out of it.

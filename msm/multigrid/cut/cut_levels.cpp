@@ -1,6 +1,7 @@
 #include "msm/multigrid/cut/cut_levels.h"
 
 #include <Eigen/LU>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -136,7 +137,7 @@ struct MeanAbove {
 void add_anchors(const std::vector<std::vector<int>>& at_point, const CutLevel& fine, CutLevel& coarse) {
   for (const Anchor& a : fine.anchors) {
     const MeanAbove above(a.corners, a.weights, at_point, fine, coarse);
-    coarse.anchors.push_back({above.corners, above.weights, a.node, a.stiffness, a.axes});
+    coarse.anchors.push_back({above.corners, above.weights, a.node, a.stiffness});
   }
   for (const InterfaceBond& b : fine.bonds) {
     const MeanAbove first(b.corners[0], b.weights[0], at_point, fine, coarse),
@@ -238,6 +239,13 @@ AnchoredNodes::AnchoredNodes(const Network& network, std::vector<char> fixed_unk
       fixed(std::move(fixed_unknowns)),
       corners(network.nodes() - static_cast<int>(network.anchors.size())) {}
 
+Eigen::Matrix3d AnchoredNodes::inverse_of_free(const Anchor& anchor) const {
+  Eigen::Matrix3d free = Eigen::Matrix3d::Zero();
+  for (int d = 0; d < 3; ++d) free(d, d) = anchor.acts(d) && !fixed[3 * anchor.node + d];
+  if (free.isZero(0)) return free;
+  return Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix3d>(free * anchor.stiffness * free).pseudoInverse();
+}
+
 StiffnessOfCells averaged_cells(const AveragedSprings& law, const CutLevel& level) {
   return {[&](std::size_t c) { return law.cell_matrix(level.shape(c)); }, true};
 }
@@ -251,10 +259,10 @@ std::vector<char> AnchoredNodes::fixed_corners() const {
 
 Eigen::VectorXd AnchoredNodes::eliminated(const Eigen::VectorXd& r) const {
   Eigen::VectorXd b = r.head(3 * corners);
-  for (const Anchor& a : anchors)  // k (u_node - sum w u) = r_node
-    for (int d = 0; d < 3; ++d)
-      if (!fixed[3 * a.node + d])
-        for (int n = 0; n < 8; ++n) b[3 * a.corners[n] + d] += a.weights[n] * r[3 * a.node + d];
+  for (const Anchor& a : anchors) {  // K (u_node - sum w u) = r_node
+    const Vec3 force = a.stiffness * inverse_of_free(a) * r.segment<3>(3 * a.node);
+    for (int n = 0; n < 8; ++n) b.segment<3>(3 * a.corners[n]) += a.weights[n] * force;
+  }
   hand_back(carried, b);
   for (int i = 0; i < 3 * corners; ++i)
     if (fixed[i]) b[i] = 0;
@@ -271,9 +279,9 @@ void AnchoredNodes::multiply(const CutMatrix<double>& of_cells, double unit, con
   carry(carried, u);
   Eigen::VectorXd& on_corners = carried.empty() ? y : f;
   for (const Anchor& a : anchors) {
-    Vec3 force = -u.segment<3>(3 * a.node);
-    for (int n = 0; n < 8; ++n) force += a.weights[n] * u.segment<3>(3 * a.corners[n]);
-    for (int d = 0; d < 3; ++d) force[d] *= a.acts(d) ? a.stiffness : 0;
+    Vec3 stretch = -u.segment<3>(3 * a.node);
+    for (int n = 0; n < 8; ++n) stretch += a.weights[n] * u.segment<3>(3 * a.corners[n]);
+    const Vec3 force = a.stiffness * stretch;
     y.segment<3>(3 * a.node) -= force;
     for (int n = 0; n < 8; ++n) on_corners.segment<3>(3 * a.corners[n]) += a.weights[n] * force;
   }
@@ -286,12 +294,11 @@ void AnchoredNodes::complete(const Eigen::VectorXd& r, const Eigen::VectorXd& of
   z.setZero(r.size());
   z.head(3 * corners) = of_corners;
   carry(carried, z);
-  for (const Anchor& a : anchors)
-    for (int d = 0; d < 3; ++d) {
-      if (fixed[3 * a.node + d]) continue;
-      z[3 * a.node + d] = r[3 * a.node + d] / a.stiffness;
-      for (int n = 0; n < 8; ++n) z[3 * a.node + d] += a.weights[n] * z[3 * a.corners[n] + d];
-    }
+  for (const Anchor& a : anchors) {
+    Vec3 mean = Vec3::Zero();
+    for (int n = 0; n < 8; ++n) mean += a.weights[n] * z.segment<3>(3 * a.corners[n]);
+    z.segment<3>(3 * a.node) = inverse_of_free(a) * (r.segment<3>(3 * a.node) + a.stiffness * mean);
+  }
   for (const CarriedPoint& c : carried) z.segment<3>(3 * c.point).setZero();
 }
 
@@ -315,11 +322,9 @@ std::vector<CutLevel> cut_levels(const Network& network, const AnchoredNodes& no
     finest.cubes.push_back({finest.point[network.cells.corners[c][0]],
                             static_cast<int>(std::lround(network.cells.edge_of(c) / network.cells.edge))});
   finest.carried = network.cells.carried;
-  for (const Anchor& a : nodes.anchors) {
-    int axes = 0;
-    for (int d = 0; d < 3; ++d) axes |= int(a.acts(d) && nodes.fixed[3 * a.node + d] != 0) << d;
-    finest.anchors.push_back({a.corners, a.weights, a.node, a.stiffness, axes});
-  }
+  for (const Anchor& a : nodes.anchors)
+    finest.anchors.push_back(
+        {a.corners, a.weights, a.node, a.stiffness - a.stiffness * nodes.inverse_of_free(a) * a.stiffness});
   std::vector<CutLevel> levels = {std::move(finest)};
   while (levels.back().point.size() > smallest_cut_level && levels.back().cubes.size() > 8) {
     CutLevel coarse = coarsen(levels.back());

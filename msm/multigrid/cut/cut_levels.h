@@ -19,7 +19,7 @@ struct CutLevel {
   std::vector<std::uint8_t> materials;    ///< of the cells; empty: one
   std::vector<std::array<int, 3>> point;  ///< in edges
   std::vector<CarriedPoint> carried;      ///< points without rows and columns in A
-  std::vector<Anchor> anchors;            ///< on the corners of a cell, along the axes that are held
+  std::vector<Anchor> anchors;            ///< on the corners of a cell, free directions of their nodes eliminated
   std::vector<InterfaceBond> bonds;       ///< on the corners of two cells
 
   // Transfer to the coarser level; empty on the coarsest.
@@ -62,6 +62,8 @@ struct AnchoredNodes {
   int corners = 0;          ///< nodes that are corners; the anchored ones follow
 
   AnchoredNodes(const Network& network, std::vector<char> fixed_unknowns);
+  /// Inverse of an anchor's stiffness in the free directions of its node; zero in others.
+  Eigen::Matrix3d inverse_of_free(const Anchor& anchor) const;
   std::vector<char> unknowns_of_corners() const { return {fixed.begin(), fixed.begin() + 3 * corners}; }  ///< fixed?
   /// The same; empty if none but carried ones is.
   std::vector<char> fixed_corners() const;

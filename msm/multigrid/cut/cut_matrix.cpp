@@ -192,9 +192,9 @@ void CutMatrix<Real>::add_anchors(const CutLevel& level, double unit) {
       for (int n = 0; n < 8; ++n)
         for_each_carrier(carriers, anchor.corners[m], [&](int p, double v) {
           for_each_carrier(carriers, anchor.corners[n], [&](int q, double w) {
-            const double k = anchor.stiffness / unit * anchor.weights[m] * anchor.weights[n] * v * w;
+            const Eigen::Matrix3d K = v * w * anchor.weights[m] * anchor.weights[n] / unit * anchor.stiffness;
             for (int a = 0; a < 3; ++a)
-              if (anchor.acts(a)) own_block(p, q)[4 * a] += static_cast<Real>(k);
+              for (int b = 0; b < 3; ++b) own_block(p, q)[3 * a + b] += static_cast<Real>(K(a, b));
           });
         });
 }

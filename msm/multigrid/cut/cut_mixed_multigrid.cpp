@@ -34,13 +34,6 @@ struct VolumeRow {
   }
 };
 
-/// Of bonds, and of walls on which a body slides, of which lambda + 2 G is the modulus.
-template <class Lattice>
-bool has_stiff_ties(const Lattice& lattice) {
-  return !lattice.bonds.empty() ||
-         std::any_of(lattice.anchors.begin(), lattice.anchors.end(), [](const Anchor& a) { return a.axes != 7; });
-}
-
 }  // namespace
 
 /// One level of the cycle, in single precision.
@@ -61,8 +54,8 @@ class CutMixedMultigrid::Level {
   Eigen::VectorXf f, g, u, p;
 
  private:
-  /// Points of CutLevel::anchored, relaxed together, and beside bonds with the pressures of the cells that have no
-  /// others.  These are left out of S: bonds are stiff, so D knows nothing of how both sides move together.
+  /// Points of CutLevel::anchored, relaxed together with the pressures of the cells that have no others.  These are
+  /// left out of S: bonds and anchors are stiff, so D knows nothing of how both sides move together.
   struct Patch {
     std::vector<int> points, cells;
     Eigen::MatrixXf gradient;  ///< rows of B of the cells
@@ -155,7 +148,7 @@ void CutMixedMultigrid::Level::set_up_schur() {
 void CutMixedMultigrid::Level::set_up_patches() {
   const Carriers carriers = carriers_of(static_cast<int>(lattice.point.size()), lattice.carried);
   std::vector<std::vector<int>> cells_at(lattice.point.size()), points_of(lattice.corners.size());
-  for (std::size_t c = 0; c < lattice.corners.size() && has_stiff_ties(lattice); ++c)
+  for (std::size_t c = 0; c < lattice.corners.size(); ++c)
     for (const int n : lattice.corners[c])
       for_each_carrier(carriers, n, [&](int i, double) {
         cells_at[i].push_back(static_cast<int>(c));
@@ -295,6 +288,8 @@ void CutMixedMultigrid::Level::sweep(bool ascending) {
   scale_by_diagonal(t);
   u -= t;
   p += q_;
+  b = load();
+  relax_patches();
 }
 
 void CutMixedMultigrid::Level::smooth(Smoothing when) {
@@ -334,7 +329,8 @@ CutMixedMultigrid::CutMixedMultigrid(const MassSpringModel& model, const std::ve
     : nodes_(model.network, fixed), network_(model.network) {
   const AveragedSprings& law = *averaged_springs_of(model);
   MixedParts parts = mixed_parts(law);
-  const int schur_sweeps = volume_stiffness_ratio(model) > 1000 && !has_stiff_ties(network_) ? 12 : 6;
+  const bool free = network_.bonds.empty() && network_.anchors.empty();
+  const int schur_sweeps = volume_stiffness_ratio(model) > 1000 && free ? 12 : 6;
   const double l = network_.cells.edge, unit = law.shear_modulus * l;
   for (double& kappa : parts.kappa) kappa /= law.shear_modulus;
   gradient_.resize(24, static_cast<Eigen::Index>(network_.cells.size()));

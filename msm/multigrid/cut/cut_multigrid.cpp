@@ -39,9 +39,7 @@ Eigen::VectorXd CutMultigrid::diagonal() const {
   for (int i = 0; i < K_.rows(); ++i)
     if (const double* block = K_.block(i, i))
       for (int a = 0; a < 3; ++a) d[3 * i + a] = unit_ * block[4 * a];
-  for (const Anchor& a : nodes_.anchors)
-    for (int axis = 0; axis < 3; ++axis)
-      if (a.acts(axis)) d[3 * a.node + axis] += a.stiffness;
+  for (const Anchor& a : nodes_.anchors) d.segment<3>(3 * a.node) += a.stiffness.diagonal();
   return d;
 }
 

@@ -137,7 +137,7 @@ TEST(CellPatches, RigidMotionsHaveNoDeformationAndNoStress) {
 }
 
 TEST(LoadsAllOver, HaveNoResultantOnAFreeBody) {
-  const Network network = cut_lattice(bracket().coarse, {}, 1);
+  const Network network = cut_lattice(bracket().coarse, {}, {{1, 0.3, 1}});
   const Eigen::MatrixXd loads = loads_all_over(network, 0), others = loads_all_over(network, 1);
   EXPECT_GE((loads - others).norm(), 0.5 * loads.norm());
   for (Eigen::Index i = 0; i < loads.cols(); ++i) {
@@ -222,7 +222,7 @@ TEST(MeasuredCells, HaveTheHarmonicMeanOfBulkModuliOfSeveralMaterials) {
   const BlockWithBalls& of = block_with_balls();
   const AveragedSprings soft = with_region(2),
                         stiff = averaged_law(test::model("hybmss_avg"), {3, 0.3, 1}, {{6, 0.3, 1}});
-  const CellSet cells = cut_lattice(of.coarse, {}, 1).cells;
+  const CellSet cells = cut_lattice(of.coarse, {}, {{1, 0.3, 1}}).cells;
   MeasuredCells measured;
   for (std::size_t c = 0; c < cells.size(); ++c)
     measured.add_form(form_of(springs_in_cell(of.fine, static_cast<int>(c), soft), cells.shape(c)));

@@ -145,7 +145,7 @@ TEST(SpringsThatRelax, AreRefusedWithTheirPlace) {
   EXPECT_EQ(message({{"/grip_m", 0.0}}), "accepted");
   const std::vector<std::pair<json, std::string>> cases = {
       {{{"/version", 5}}, "/relaxation: is in a file of an earlier version (allowed: version 6)"},
-      {{{"/version", 7}}, "/version: is 7"},
+      {{{"/version", 8}}, "/version: is 8"},
       {{{"/relaxation/share/0", -0.1}}, "/relaxation/share/0: is -0.1"},
       {{{"/relaxation/time_s/1", 0}}, "/relaxation/time_s/1: is 0"},
       {{{"/relaxation/time_s", {1}}}, "/relaxation/time_s: has 1"},
