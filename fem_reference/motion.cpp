@@ -32,6 +32,8 @@ class MidpointRule {
  public:
   MidpointRule(const GridProblem& problem, const Body3& body, const dealii::DoFHandler<3>& dof_handler)
       : problem_(problem),
+        body_(body),
+        dof_handler_(dof_handler),
         motion_(*problem.motion),
         held_(prescribed(dof_handler, body, problem.loads)),
         cells_(problem, body, dof_handler, held_),
@@ -39,9 +41,7 @@ class MidpointRule {
         v_(x_.u),
         a_(x_.u),
         last_p_(x_.p) {
-    const DofVector load = load_vector(dof_handler, body, problem);
-    load_.resize(x_.u.size());
-    for (Eigen::Index i = 0; i < load_.size(); ++i) load_[i] = load[i];
+    set_load(0);
     if (motion_.released) check_held(held_, dof_handler.get_communicator());
     set_velocity(body, dof_handler);
   }
@@ -98,6 +98,7 @@ class MidpointRule {
     }
     const Unknowns* const start = motion_.energy_momentum ? &x_ : nullptr;
     const Viscous viscous{motion_.viscosity, 2 / dt, x_.u};
+    if (problem_.body_force) set_load((from + to) / 2);
     if (!solve(middle, load_factor(from, to), viscous, start, inertia, offset)) return false;
     cells_.relax(middle, viscous);
     const VectorXd p = start ? VectorXd(2 * middle.p - x_.p) : middle.p;  // at the end of the step, or in its middle
@@ -117,6 +118,12 @@ class MidpointRule {
   }
 
  private:
+  void set_load(double time) {
+    const DofVector load = load_vector(dof_handler_, body_, problem_, time);
+    load_.resize(x_.u.size());
+    for (Eigen::Index i = 0; i < load_.size(); ++i) load_[i] = load[i];
+  }
+
   /// That of the whole body, about its centre of mass.
   void set_velocity(const Body3& body, const dealii::DoFHandler<3>& dof_handler) {
     std::map<dealii::types::global_dof_index, dealii::Point<3>> points;
@@ -187,6 +194,8 @@ class MidpointRule {
   }
 
   const GridProblem& problem_;
+  const Body3& body_;
+  const dealii::DoFHandler<3>& dof_handler_;
   const MotionRequest& motion_;
   std::vector<Prescribed> held_;
   BodyCells cells_;

@@ -29,9 +29,9 @@ struct GridProblem {
     return number == 0 ? material : regions.at(number - 1);
   }
   std::vector<Load> loads;
-  std::vector<AttachedMass> masses;             ///< beside the body's own, in motions and modes
-  std::function<Vec3(const Vec3&)> body_force;  ///< [N/m^3], besides gravity; empty: none
-  NodalVectors points;                          ///< rest positions at which the displacement is requested, n x 3 [m]
+  std::vector<AttachedMass> masses;                            ///< beside the body's own, in motions and modes
+  std::function<Vec3(const Vec3& X, double time)> body_force;  ///< [N/m^3], besides gravity; empty: none
+  NodalVectors points;  ///< rest positions at which the displacement is requested, n x 3 [m]
   NodalVectors stress_points = NodalVectors(0, 3);  ///< and the stress
   double tolerance = 1e-9;                          ///< relative residual
   Method method = Method::automatic;

@@ -269,7 +269,8 @@ void check_held(const std::vector<Prescribed>& prescribed, MPI_Comm comm) {
                                turns ? "turn about" : "move along", along[0], along[1], along[2], help));
 }
 
-DofVector load_vector(const dealii::DoFHandler<3>& dof_handler, const Body3& body, const GridProblem& problem) {
+DofVector load_vector(const dealii::DoFHandler<3>& dof_handler, const Body3& body, const GridProblem& problem,
+                      double time) {
   DofVector load = zero_vector(dof_handler);
   const unsigned int points = dof_handler.get_fe().degree + 1;
   const MPI_Comm comm = dof_handler.get_communicator();
@@ -317,7 +318,7 @@ DofVector load_vector(const dealii::DoFHandler<3>& dof_handler, const Body3& bod
       add_field([&](const Vec3& X) { return exact_body_force(field->field, X, problem.material); });
     if (const auto* point = std::get_if<PointForce>(&l)) add_point_force(dof_handler, body, *point, load);
   }
-  if (problem.body_force) add_field(problem.body_force);
+  if (problem.body_force) add_field([&](const Vec3& X) { return problem.body_force(X, time); });
   load.compress(dealii::VectorOperation::add);
   return load;
 }

@@ -1,9 +1,12 @@
 #include "msm/measure/promised_error.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <optional>
+#include <set>
 #include <stdexcept>
 
 #include "meshes/voxels/refined_grid.h"
@@ -13,6 +16,8 @@ namespace {
 
 constexpr double share_of_the_error = 0.3;  // of the cells that are halved at once
 constexpr int most_halvings = 4;
+constexpr double least_spread = 0.1;  // variance of the middles of cells along any axis, in edges; of eight cells 1/4
+constexpr int most_rings = 3;         // of cells around a node
 
 /// Strains as rows of nine.
 using Strains = Eigen::Matrix<double, Eigen::Dynamic, 9, Eigen::RowMajor>;
@@ -57,6 +62,63 @@ Strains nodal_strains(const Network& network, const Strains& of_cells) {
     for (const int n : p.by) sum.row(p.point) += sum.row(n) / static_cast<double>(p.by.size());
   }
   return sum;
+}
+
+/// Weight of each corner of a cell where what it holds has its middle.
+std::array<double, 8> weights_of_middle(const FilledPart& part) {
+  std::array<double, 8> weights;
+  for (int n = 0; n < 8; ++n) {
+    weights[n] = 1;
+    for (int d = 0; d < 3; ++d) weights[n] *= 0.5 + corner_side(n, d) * part.mean[d];
+  }
+  return weights;
+}
+
+/// The strain at a place that is linear in some cells and nearest to their mean strains; nothing where the cells do not
+/// span the space.
+class LinearStrain {
+ public:
+  LinearStrain(const Network& network, const Strains& of_cells)
+      : of_cells_(of_cells), middle_(static_cast<Eigen::Index>(network.cells.size()), 3) {
+    for (std::size_t c = 0; c < network.cells.size(); ++c) {
+      const std::array<double, 8> weights = weights_of_middle(network.cells.part(c));
+      Eigen::RowVector3d X = Eigen::RowVector3d::Zero();
+      for (int n = 0; n < 8; ++n) X += weights[n] * network.X.row(network.cells.corners[c][n]);
+      middle_.row(static_cast<Eigen::Index>(c)) = X;
+      volume_.push_back(filled_volume(network, c));
+    }
+  }
+
+  std::optional<Eigen::Matrix<double, 1, 9>> operator()(const std::set<int>& cells, const Eigen::RowVector3d& X,
+                                                        double edge) const {
+    Eigen::Matrix4d moments = Eigen::Matrix4d::Zero();
+    Eigen::Matrix<double, 4, 9> sum = Eigen::Matrix<double, 4, 9>::Zero();
+    double volume = 0;
+    for (const int c : cells) {
+      Eigen::Vector4d of;
+      of << 1, (middle_.row(c) - X).transpose() / edge;
+      moments += volume_[c] * of * of.transpose();
+      sum += volume_[c] * of * of_cells_.row(c);
+      volume += volume_[c];
+    }
+    const Vec3 mean = moments.col(0).tail<3>() / volume;
+    const Eigen::Matrix3d spread = moments.bottomRightCorner<3, 3>() / volume - mean * mean.transpose();
+    if (spread.selfadjointView<Eigen::Lower>().eigenvalues()[0] < least_spread) return {};
+    return moments.ldlt().solve(sum).row(0).eval();
+  }
+
+ private:
+  const Strains& of_cells_;
+  NodalVectors middle_;
+  std::vector<double> volume_;
+};
+
+std::set<int> cells_at_corners(const Network& network, const std::vector<std::vector<int>>& at,
+                               const std::set<int>& cells) {
+  std::set<int> around;
+  for (const int c : cells)
+    for (const int n : network.cells.corners[c]) around.insert(at[n].begin(), at[n].end());
+  return around;
 }
 
 /// Energy of the anchors of each cell, and half of that of its bonds.
@@ -131,6 +193,31 @@ CellEnergies cell_energies(const MassSpringModel& model, const NodalVectors& u) 
     energies.elastic += of_corners.dot(law->cell_matrix(network.cells.shape(c)) * of_corners) / 2;
   }
   return energies;
+}
+
+std::array<NodalVectors, 2> recovered_stress(const MassSpringModel& model, const NodalVectors& u) {
+  const AveragedSprings* law = averaged_springs_of(model);
+  if (!law) throw std::invalid_argument("stresses are recovered in cells of averaged springs");
+  const Network& network = model.network;
+  const Strains of_cells = cell_strains(network, u), means = nodal_strains(network, of_cells);
+  const LinearStrain linear(network, of_cells);
+  std::vector<std::vector<int>> at(network.nodes());
+  for (std::size_t c = 0; c < network.cells.size(); ++c)
+    for (const int n : network.cells.corners[c]) at[n].push_back(static_cast<int>(c));
+  const NodalVectors none = NodalVectors::Zero(network.nodes(), 3);
+  std::array<NodalVectors, 2> stress = {none, none};
+  for (int n = 0; n < network.nodes(); ++n) {
+    std::set<int> cells(at[n].begin(), at[n].end());
+    if (cells.empty()) continue;
+    std::optional<Eigen::Matrix<double, 1, 9>> strain;
+    for (int ring = 0; ring < most_rings && !(strain = linear(cells, network.X.row(n), network.cells.edge)); ++ring)
+      cells = cells_at_corners(network, at, cells);
+    const Eigen::Matrix3d E = as_matrix(strain ? *strain : Eigen::Matrix<double, 1, 9>(means.row(n)));
+    const Eigen::Matrix3d S = 2 * law->shear_modulus * E + law->lame_lambda * E.trace() * Eigen::Matrix3d::Identity();
+    stress[0].row(n) = S.diagonal().transpose();
+    stress[1].row(n) << S(0, 1), S(1, 2), S(0, 2);
+  }
+  return stress;
 }
 
 bool halve_worst_cells(const CutBody& cut, const std::vector<double>& errors, VoxelGrid& grid) {

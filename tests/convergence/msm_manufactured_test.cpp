@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "meshes/mesher/mesher.h"
 #include "msm/dynamics/dynamics.h"
 #include "msm/embedding/cut_lattice.h"
 #include "msm/statics/equilibrium.h"
@@ -16,9 +17,16 @@ using test::ClosedMotion;
 using test::PiolaStress;
 
 enum class Cells { cubes, boxes, cut };
-const char* name_of(Cells cells) { return cells == Cells::cubes ? "cubes" : cells == Cells::boxes ? "boxes" : "cut"; }
+const char* name_of(Cells cells) {
+  return cells == Cells::cubes ? "cubes" : cells == Cells::boxes ? "boxes" : "cut cells";
+}
 
-/// A unit cube of neo-Hookean springs, n cells along it; in cut cells it lies askew in the lattice.
+/// The law that a curve of the springs stands for.
+PiolaStress law_of(StrainCurve curve, const IsotropicMaterial& m) {
+  return curve == StrainCurve::neo_hooke ? test::neo_hookean(m) : test::hencky(m);
+}
+
+/// A unit cube of averaged springs, n cells along it; in cut cells it lies askew in the lattice.
 struct SpringCube {
   EmbeddedModel built;
   CutBody cut;
@@ -26,9 +34,9 @@ struct SpringCube {
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  ///< of the cube in the lattice
   std::vector<char> held;                              ///< nodes on the surface
 
-  SpringCube(Cells cells, int n, const IsotropicMaterial& material) {
+  SpringCube(Cells cells, int n, const IsotropicMaterial& material, StrainCurve curve = StrainCurve::neo_hooke) {
     ModelParameters p = test::model("hybmss_avg");
-    p.curve = StrainCurve::neo_hooke;
+    p.curve = curve;
     const int up = cells == Cells::boxes ? n / 2 : n;
     const Mesh block = block_mesh({1, 1, 1}, {n, n, up});
     if (cells == Cells::cut) {
@@ -93,10 +101,9 @@ struct SpringCube {
   }
 };
 
-double error_at_rest(Cells cells, int n, const IsotropicMaterial& m, const ClosedMotion& x) {
-  const SpringCube cube(cells, n, m);
-  const PiolaStress P = test::neo_hookean(m);
-  const BoundaryConditions whole = cube.conditions(x, P, 0, 0);
+double error_at_rest(Cells cells, int n, const IsotropicMaterial& m, StrainCurve curve, const ClosedMotion& x) {
+  const SpringCube cube(cells, n, m, curve);
+  const BoundaryConditions whole = cube.conditions(x, law_of(curve, m), 0, 0);
   const Equilibrium e = solve_finite(cube.built.model, [&](double factor) {
     BoundaryConditions part = whole;
     part.prescribed *= factor;
@@ -112,19 +119,22 @@ struct AtRest {
   ClosedMotion x;
   Cells cells;
   double poisson_ratio, order;
+  StrainCurve curve = StrainCurve::neo_hooke;
 };
+const char* law_name(StrainCurve curve) { return curve == StrainCurve::neo_hooke ? "neo-Hooke" : "Hencky"; }
 void PrintTo(const AtRest& row, std::ostream* out) {
-  *out << fmt::format("{}, {}, nu = {}", row.motion, name_of(row.cells), row.poisson_ratio);
+  *out << fmt::format("{}, {}, {}, nu = {}", row.motion, law_name(row.curve), name_of(row.cells), row.poisson_ratio);
 }
 class ManufacturedAtRest : public testing::TestWithParam<AtRest> {};
 
 TEST_P(ManufacturedAtRest, HasItsOrder) {
   const AtRest& row = GetParam();
   const IsotropicMaterial m{1, row.poisson_ratio, 1};
-  const double coarse = error_at_rest(row.cells, 6, m, row.x), fine = error_at_rest(row.cells, 12, m, row.x);
-  const double order = std::log2(coarse / fine);
-  RecordProperty("errors", fmt::format("{:.2e} {:.2e}", coarse, fine));
-  RecordProperty("order", fmt::format("{:.2f}", order));
+  const double coarse = error_at_rest(row.cells, 6, m, row.curve, row.x),
+               fine = error_at_rest(row.cells, 12, m, row.curve, row.x);
+  const double order = test::recorded_order(
+      fmt::format("`hybmss_avg`, {}, {}", law_name(row.curve), name_of(row.cells)),
+      fmt::format("{}, ν = {:g}", row.motion, row.poisson_ratio), row.cells == Cells::cut ? 1 : 2, coarse, fine);
   EXPECT_GE(order, row.order) << coarse << " -> " << fine;
   EXPECT_LE(fine, 0.08);
 }
@@ -140,6 +150,7 @@ std::vector<AtRest> rows_at_rest() {
     rows.push_back({"twist", twist, cells, 0.3, order});
     rows.push_back({"twist", twist, cells, cells == Cells::cut ? 0.45 : 0.499, order});
     rows.push_back({"bent", test::bent(0.6 * part), cells, 0, order});
+    rows.push_back({"bulge", bulge, cells, 0.3, order, StrainCurve::hencky});
   }
   return rows;
 }
@@ -183,9 +194,8 @@ TEST_P(ManufacturedInMotion, HasTheOrderOfItsSteps) {
   const InMotion& row = GetParam();
   const double coarse = error_in_motion(4, row.steps, row.integrator, row.x),
                fine = error_in_motion(row.fine_cells, 2 * row.steps, row.integrator, row.x),
-               order = std::log2(coarse / fine);
-  RecordProperty("errors", fmt::format("{:.2e} {:.2e}", coarse, fine));
-  RecordProperty("order", fmt::format("{:.2f}", order));
+               order = test::recorded_order(fmt::format("`hybmss_avg`, {}", name_of(row.integrator)), row.motion,
+                                            row.integrator == Integrator::implicit_euler ? 1 : 2, coarse, fine);
   EXPECT_GE(order, row.order) << coarse << " -> " << fine;
   EXPECT_LE(fine, 0.12);
 }
@@ -200,6 +210,65 @@ std::vector<InMotion> rows_in_motion() {
           {"spin", spin, Integrator::implicit_euler, 40, 4, 0.9}};
 }
 INSTANTIATE_TEST_SUITE_P(Springs, ManufacturedInMotion, testing::ValuesIn(rows_in_motion()));
+
+/// Springs of small strains: lattices, and networks of about n^3 nodes.
+double linear_error(const std::string& name, int n, const IsotropicMaterial& m, const ClosedMotion& x, unsigned seed) {
+  ModelParameters p = test::model(name);
+  p.random.seed = seed;
+  const Mesh mesh =
+      passes_patch_test(p.row)
+          ? mesh_body({.file = find_geo({"bar.geo", {}, {}, {}}, "case.toml"), .size = {1, 1, 1}, .edge = 1. / n}).mesh
+          : block_mesh({1, 1, 1}, {n, n, n});
+  const MassSpringModel model = build_model(p, mesh, m);
+  const NodalVectors& X = model.network.X;
+  BoundaryConditions bc{std::vector<char>(X.size(), 0), std::vector<int>(X.size(), -1), 0 * X, 0 * X};
+  NodalVectors exact = X;
+  for (int i = 0; i < model.network.nodes(); ++i) {
+    const Vec3 at = X.row(i);
+    exact.row(i) = (x(at, 0) - at).transpose();
+    bc.external.row(i) = model.network.volume[i] * test::body_force(x, test::linear_elastic(m), 0, at, 0).transpose();
+    if (!SpringCube::on_surface(at)) continue;
+    std::fill_n(bc.fixed.begin() + 3 * i, 3, 1);
+    std::fill_n(bc.owner.begin() + 3 * i, 3, 0);
+    bc.prescribed.row(i) = exact.row(i);
+  }
+  const Equilibrium e = solve_linear(model, bc);
+  EXPECT_TRUE(e.ok) << e.message;
+  return (e.displacement - exact).norm() / exact.norm();
+}
+
+struct SmallStrain {
+  const char* model;
+  double poisson_ratio;
+  double expected, order;  ///< of theory (0: none), and at least
+};
+void PrintTo(const SmallStrain& row, std::ostream* out) {
+  *out << fmt::format("{}, nu = {}", row.model, row.poisson_ratio);
+}
+class ManufacturedAtSmallStrain : public testing::TestWithParam<SmallStrain> {};
+
+TEST_P(ManufacturedAtSmallStrain, HasItsOrder) {
+  const SmallStrain& row = GetParam();
+  const IsotropicMaterial m{1, row.poisson_ratio, 1};
+  const ClosedMotion bulge = test::bulge([](double) { return 1; });
+  double coarse = 0, fine = 0;
+  const int networks = row.expected > 0 ? 1 : 3;
+  for (int seed = 1; seed <= networks; ++seed) {
+    coarse += linear_error(row.model, 6, m, bulge, seed) / networks;
+    fine += linear_error(row.model, 12, m, bulge, seed) / networks;
+  }
+  const double order =
+      test::recorded_order(fmt::format("`{}`", row.model),
+                           fmt::format("bulge, small strain, ν = {:g}", row.poisson_ratio), row.expected, coarse, fine);
+  EXPECT_GE(order, row.order) << coarse << " -> " << fine;
+}
+
+INSTANTIATE_TEST_SUITE_P(Springs, ManufacturedAtSmallStrain,
+                         testing::Values(SmallStrain{"msm_18", 0.25, 2, 1.8}, SmallStrain{"hybmss", 0.3, 2, 1.8},
+                                         SmallStrain{"hybmss_bt", 0.3, 2, 1.8}, SmallStrain{"hybmss_bt", 0.499, 2, 1.5},
+                                         SmallStrain{"emsm", 0.3, 2, 1.8}, SmallStrain{"msm_random", 0.25, 0, 0.5},
+                                         SmallStrain{"emsm_random", 0.3, 0, 0.5},
+                                         SmallStrain{"emsm_patch", 0.3, 2, 1.5}));
 
 TEST(ManufacturedMotions, NeedNoForceWhereTheirStressIsUniform) {
   const IsotropicMaterial m{1, 0.3, 1};

@@ -1,6 +1,9 @@
 // Motions known in closed form, and the body forces that cause them.
 #pragma once
 
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
 #include <Eigen/Dense>
 #include <cmath>
 #include <functional>
@@ -31,6 +34,25 @@ inline PiolaStress hencky(const IsotropicMaterial& m) {
     const Eigen::Matrix3d tau = n * (G * b.eigenvalues().array().log()).matrix().asDiagonal() * n.transpose();
     return (tau + lambda * std::log(F.determinant()) * Eigen::Matrix3d::Identity()) * F.inverse().transpose();
   };
+}
+
+/// Of small strains: Hooke's.
+inline PiolaStress linear_elastic(const IsotropicMaterial& m) {
+  return [G = shear_modulus(m), lambda = lame_lambda(m)](const Eigen::Matrix3d& F) -> Eigen::Matrix3d {
+    const Eigen::Matrix3d I = Eigen::Matrix3d::Identity();
+    return G * (F + F.transpose() - 2 * I) + lambda * (F.trace() - 3) * I;
+  };
+}
+
+/// Order of two errors, the second with half of the first's edges or steps; docs/scripts/orders.sh makes a row of a
+/// page of it.
+inline double recorded_order(const std::string& what, const std::string& field, double expected, double coarse,
+                             double fine) {
+  const double order = std::log2(coarse / fine);
+  testing::Test::RecordProperty("order",
+                                fmt::format("| {} | {} | {} | {:.1f} | {:.2g} % |", what, field,
+                                            expected > 0 ? fmt::format("{:g}", expected) : "none", order, 100 * fine));
+  return order;
 }
 
 /// df/ds at 0 by central differences of eighth order: 1e-9 of what varies over a length of 1.

@@ -1,0 +1,62 @@
+// Stress recovered at the nodes of averaged springs.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "msm/measure/promised_error.h"
+#include "support/manufactured.h"
+#include "support/zoo.h"
+
+namespace springproof::recovered_stress_test {
+namespace {
+
+const IsotropicMaterial material{1e4, 0.3, 1000};
+
+/// Largest error over the nodes of a model, relative to the largest stress.
+double error(const MassSpringModel& model, const test::ClosedMotion& x) {
+  const NodalVectors& X = model.network.X;
+  NodalVectors u = X;
+  for (Eigen::Index n = 0; n < X.rows(); ++n) u.row(n) = (x(X.row(n), 0) - X.row(n).transpose()).transpose();
+  const auto stress = recovered_stress(model, u);
+  double off = 0, most = 0;
+  for (Eigen::Index n = 0; n < X.rows(); ++n) {
+    if (stress[0].row(n).isZero() && stress[1].row(n).isZero()) continue;  // anchored: in no cell
+    const Eigen::Matrix3d S = test::linear_elastic(material)(test::deformation_gradient(x, X.row(n), 0));
+    Eigen::Matrix<double, 1, 6> exact, found;
+    exact << S.diagonal().transpose(), S(0, 1), S(1, 2), S(0, 2);
+    found << stress[0].row(n), stress[1].row(n);
+    off = std::max(off, (found - exact).norm());
+    most = std::max(most, exact.norm());
+  }
+  return off / most;
+}
+
+MassSpringModel averaged(const Mesh& mesh) { return build_model(test::model("hybmss_avg"), mesh, material); }
+
+MassSpringModel averaged_in_cut_cells() {
+  const Network network = test::cut_network();
+  return {network, build_model(test::model("hybmss_avg"), block_mesh({1, 1, 1}, {2, 2, 2}), material).laws};
+}
+
+Vec3 affine(const Vec3& X, double) { return X + 1e-3 * Vec3(X[0] + 2 * X[1], X[2] - 3 * X[1], X[0]); }
+Vec3 quadratic(const Vec3& X, double) {
+  return X + 1e-3 * Vec3(X[0] * X[0] - X[1] * X[2], 2 * X[0] * X[1] + X[2], X[2] * X[2] + 3 * X[0]);
+}
+
+TEST(RecoveredStress, IsExactWhereItIsLinearAlsoOnFacesEdgesAndCorners) {
+  EXPECT_LE(error(averaged(test::notched_block()), affine), 1e-9);
+  EXPECT_LE(error(averaged_in_cut_cells(), affine), 1e-9);
+  EXPECT_LE(error(averaged(block_mesh({1, 1, 1}, {4, 3, 5})), quadratic), 1e-8);
+}
+
+TEST(RecoveredStress, IsOfSecondOrderUpToTheSurface) {
+  const auto waves = [](const Vec3& X, double) {
+    return Vec3(X + 1e-3 * Vec3(std::sin(2 * X[0] + X[1]), std::cos(X[1] - 2 * X[2]), std::sin(X[0] * X[2])));
+  };
+  const double coarse = error(averaged(block_mesh({1, 1, 1}, {6, 6, 6})), waves),
+               fine = error(averaged(block_mesh({1, 1, 1}, {12, 12, 12})), waves);
+  EXPECT_GE(test::recorded_order("`hybmss_avg`, recovered stress, largest", "waves, ν = 0.3", 2, coarse, fine), 1.8);
+}
+
+}  // namespace
+}  // namespace springproof::recovered_stress_test
