@@ -79,12 +79,6 @@ ListedModuli told_apart(std::size_t region, std::vector<IsotropicMaterial> mater
 
 /// What of a case is computed of one material alone, and what it may be instead; empty: nothing.
 std::optional<std::pair<std::string, SourceLocation>> of_one_material(const Experiment& e) {
-  if (!e.models.empty() && !e.body.is_voxels())
-    return {
-        {fmt::format("compare.models: {} on a block is of one material (allowed: voxels or voxel_edge_m in [body]; or "
-                     "models = [], with elements in [reference])",
-                     e.models.front().label),
-         e.models.front().where}};
   const SourceLocation& region = e.regions.front().where;
   const auto says = [&](const char* what, const char* allowed) {
     return std::pair{fmt::format("region: '{}': {} (allowed: {})", e.regions.front().name, what, allowed), region};

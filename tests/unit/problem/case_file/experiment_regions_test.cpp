@@ -132,7 +132,6 @@ TEST(CaseWithRegions, ListsMaterialsInOnePlaceAlone) {
 }
 
 TEST(CaseWithRegions, IsRefusedWhereOneMaterialIsKnown) {
-  EXPECT_WORDS(message_of(block + tumour), "hybmss on a block is of one material");
   EXPECT_WORDS(message_of(body + "[compare]\nmodels = [\"hybmss_avg\"]\nparts = true\n" + tumour),
                "the parts of errors");
   EXPECT_WORDS(message_of(body + "[compare]\nmodels = [\"hybmss_avg\"]\nmeasures = [\"promised_error\"]\n" + tumour),
