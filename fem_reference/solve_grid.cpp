@@ -15,6 +15,7 @@
 #include "fem_reference/solvers/coarsest_level.h"
 #include "fem_reference/system/boundary_conditions.h"
 #include "fem_reference/system/elastic_system.h"
+#include "fem_reference/system/interfaces.h"
 #include "fem_reference/system/materials.h"
 #include "fem_reference/system/sample.h"
 #include "fem_reference/system/solution_file.h"
@@ -215,7 +216,10 @@ void solve_into(Solution& solution, const GridProblem& problem, const Body3& bod
     write_solution(problem.vtu, at_own_nodes(discrete.system, law_named(problem.law), answer, u), problem.vtu_notes);
   if (!problem.regions.empty()) {
     solution.regions = measure_regions(discrete.system, answer, u);
-    solution.interfaces = measure_interfaces(discrete.system, answer, u);
+    std::vector<DofVector> loads;
+    for (unsigned int m = 0; m <= problem.regions.size(); ++m)
+      loads.push_back(load_vector(dof_handler, body, problem, 0, m));
+    solution.interfaces = measure_interfaces(discrete.system, answer, u, loads);
   }
   const VolumeMeasure volume = measure_volume(body, dof_handler, u);
   solution.volume_change = volume.change;

@@ -271,8 +271,8 @@ struct Part {
 struct RegionRecord {
   std::string name;    ///< "": in no region
   std::string colour;  ///< in the section
-  double youngs_modulus_Pa = 0;
-  double poisson_ratio = 0;
+  std::vector<double> youngs_modulus_Pa;  ///< of each material that the case gives it, and its
+  std::vector<double> poisson_ratio;
   double density_kg_m3 = 0;
   double volume_m3 = 0;
   std::vector<int> cells;  ///< of the springs, at each resolution; cut ones counted whole

@@ -186,6 +186,15 @@ void check_grids_of_reference(PreparedCase& prepared) {
   }
 }
 
+/// Marks the regions of a lattice; the finest shows them where there is no reference.
+/// @throws InputError at a region whose border runs through its cells.
+void mark_lattice(PreparedCase& prepared, Mesh& mesh) {
+  const Experiment& e = prepared.experiment;
+  if (e.regions.empty() || e.models.empty()) return;
+  std::vector<std::string> notes = mark_regions(e.regions, 1, mesh);
+  if (prepared.lattices.empty() && e.reference.elements.empty()) prepared.body.notes = std::move(notes);
+}
+
 void prepare_blocks(PreparedCase& prepared) {
   const Experiment& e = prepared.experiment;
   prepared.reference_cells = reference_cells(e);
@@ -194,10 +203,13 @@ void prepare_blocks(PreparedCase& prepared) {
     MeshedBody body =
         mesh_body({.file = prepared.body.geo, .size = e.body.size, .cells = cells, .volumes = volumes_of(e.regions)});
     if (prepared.lattices.empty()) prepared.body.notes = std::move(body.notes);
+    mark_lattice(prepared, body.mesh);
     select_whole_facets(e.patches, body.mesh);
     add_lattice({cells, std::make_shared<Mesh>(std::move(body.mesh))}, prepared);
   }
   check_grids_of_reference(prepared);
+  if (!e.regions.empty() && !prepared.body.of_regions)
+    prepared.body.of_regions = prepared.lattices[finest_lattice(prepared)].mesh;
 }
 
 /// Samples the patches of the body itself, if their mean displacement is measured.

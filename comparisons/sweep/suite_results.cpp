@@ -83,9 +83,13 @@ std::vector<RegionRecord> regions_of(const PreparedCase& p) {
   const Eigen::VectorXd volumes = cell_volumes(body, body.nodes);
   std::vector<RegionRecord> all;
   for (std::size_t r = 0; r <= e.regions.size(); ++r) {
-    const IsotropicMaterial& m = r == 0 ? e.materials.front() : e.regions[r - 1].material;
+    const std::vector<IsotropicMaterial> materials = e.materials_of_part(r);
     RegionRecord& record = all.emplace_back(RegionRecord{
-        r == 0 ? "" : e.regions[r - 1].name, material_colour(r), m.youngs_modulus, m.poisson_ratio, m.density, 0, {}});
+        r == 0 ? "" : e.regions[r - 1].name, material_colour(r), {}, {}, materials.front().density, 0, {}});
+    for (const IsotropicMaterial& m : materials) {
+      record.youngs_modulus_Pa.push_back(m.youngs_modulus);
+      record.poisson_ratio.push_back(m.poisson_ratio);
+    }
     for (std::size_t c = 0; c < body.materials.size(); ++c)
       if (body.materials[c] == r) record.volume_m3 += volumes[static_cast<Eigen::Index>(c)];
     for (const Lattice& lattice : p.lattices)

@@ -94,14 +94,7 @@ struct AssembledOperator::Spaces {
       const dealii::Triangulation<3>::cell_iterator here = cell;
       law = system_.law_of(cell->material_id(), law.law);
       values.reinit(here);
-      const int n = int(scalar->n_dofs_per_cell()), points = int(quadrature.size());
-      shape.gradients.resize(3 * points, n);
-      shape.weights.resize(points);
-      for (int q = 0; q < points; ++q) {
-        shape.weights[q] = values.JxW(q);
-        for (int a = 0; a < n; ++a)
-          for (int i = 0; i < 3; ++i) shape.gradients(3 * q + i, a) = values.shape_grad(a, q)[i];
-      }
+      set_shape(values, shape);
       visit();
     }
   }

@@ -128,19 +128,27 @@ void for_each_cell(const dealii::DoFHandler<3>& dof_handler, const Body3& body, 
   }
 }
 
+// The load vector, or what of it acts on cells of one material.
+struct LoadOn {
+  DofVector load;
+  std::optional<unsigned int> material;
+  bool takes(const auto& cell) const { return !material || cell->material_id() == *material; }
+};
+
 // Adds force(values, q), per area or volume, over a region: region(visit) calls visit(cell, values).
 template <typename Region, typename Force>
-void add_force(const Region& region, const Force& force, DofVector& load) {
+void add_force(const Region& region, const Force& force, LoadOn& to) {
   region([&](const auto& cell, const auto& values) {
+    if (!to.takes(cell)) return;
     add_integral(
-        values, cell, [&](unsigned int q) { return force(values, q); }, load);
+        values, cell, [&](unsigned int q) { return force(values, q); }, to.load);
   });
 }
 
 // Adds the rigid field that, together with `force` (added elsewhere), has the given resultant.
 template <typename Region, typename Force>
 void complete(const Region& region, const Force& force, const std::optional<Wrench>& wrench, MPI_Comm comm,
-              DofVector& load) {
+              LoadOn& to) {
   if (!wrench) return;
   RegionMoments moments;
   Wrench own{Vec3::Zero(), Vec3::Zero(), wrench->about};
@@ -160,17 +168,16 @@ void complete(const Region& region, const Force& force, const std::optional<Wren
   const Wrench missing{wrench->force - own.force, wrench->moment - own.moment, wrench->about};
   const RigidField field = rigid_field(moments, missing);
   add_force(
-      region, [&](const auto& values, unsigned int q) { return field.at(vec(values.quadrature_point(q))); }, load);
+      region, [&](const auto& values, unsigned int q) { return field.at(vec(values.quadrature_point(q))); }, to);
 }
 
-void add_point_force(const dealii::DoFHandler<3>& dof_handler, const Body3& body, const PointForce& point,
-                     DofVector& load) {
+void add_point_force(const dealii::DoFHandler<3>& dof_handler, const Body3& body, const PointForce& point, LoadOn& to) {
   const Location place = locate(body, point.at.transpose()).front();
-  if (!place.answers) return;
+  if (!place.answers || !to.takes(place.cell)) return;
   const auto& fe = dof_handler.get_fe();
   const auto dofs = dofs_at(place, dof_handler);
   for (unsigned int i = 0; i < dofs.size(); ++i)
-    load[dofs[i]] += fe.shape_value(i, place.unit) * point.force[fe.system_to_component_index(i).first];
+    to.load[dofs[i]] += fe.shape_value(i, place.unit) * point.force[fe.system_to_component_index(i).first];
 }
 
 }  // namespace
@@ -270,8 +277,8 @@ void check_held(const std::vector<Prescribed>& prescribed, MPI_Comm comm) {
 }
 
 DofVector load_vector(const dealii::DoFHandler<3>& dof_handler, const Body3& body, const GridProblem& problem,
-                      double time) {
-  DofVector load = zero_vector(dof_handler);
+                      double time, std::optional<unsigned int> material) {
+  LoadOn to{zero_vector(dof_handler), material};
   const unsigned int points = dof_handler.get_fe().degree + 1;
   const MPI_Comm comm = dof_handler.get_communicator();
   const auto over_patch = [&](const std::string& patch) {
@@ -281,13 +288,13 @@ DofVector load_vector(const dealii::DoFHandler<3>& dof_handler, const Body3& bod
     return [&, n](const auto& visit) { for_each_cell(dof_handler, body, n, visit); };
   };
   const auto add = [&](const auto& region, const auto& force, const std::optional<Wrench>& wrench) {
-    add_force(region, force, load);
-    complete(region, force, wrench, comm, load);
+    add_force(region, force, to);
+    complete(region, force, wrench, comm, to);
   };
   const auto add_field = [&](const std::function<Vec3(const Vec3&)>& f) {
     add_force(
         over_body(std::min(points + 2, 4u)),
-        [&](const auto& values, unsigned int q) { return f(vec(values.quadrature_point(q))); }, load);
+        [&](const auto& values, unsigned int q) { return f(vec(values.quadrature_point(q))); }, to);
   };
   for (const Load& l : problem.loads) {
     if (const auto* traction = std::get_if<Traction>(&l))
@@ -306,21 +313,20 @@ DofVector load_vector(const dealii::DoFHandler<3>& dof_handler, const Body3& bod
       add(
           over_patch(total->on), [&](const auto&, unsigned int) { return traction; }, total->wrench);
     }
-    if (const auto* gravity = std::get_if<Gravity>(&l)) {
+    if (const auto* gravity = std::get_if<Gravity>(&l))
       add(
           over_body(points),
           [&](const auto& values, unsigned int) -> Vec3 {
             return problem.material_of(values.get_cell()->material_id()).density * gravity->acceleration;
           },
           gravity->wrench);
-    }
     if (const auto* field = std::get_if<FieldBodyForce>(&l))
       add_field([&](const Vec3& X) { return exact_body_force(field->field, X, problem.material); });
-    if (const auto* point = std::get_if<PointForce>(&l)) add_point_force(dof_handler, body, *point, load);
+    if (const auto* point = std::get_if<PointForce>(&l)) add_point_force(dof_handler, body, *point, to);
   }
   if (problem.body_force) add_field([&](const Vec3& X) { return problem.body_force(X, time); });
-  load.compress(dealii::VectorOperation::add);
-  return load;
+  to.load.compress(dealii::VectorOperation::add);
+  return to.load;
 }
 
 namespace {
@@ -334,10 +340,11 @@ std::vector<DofVector> areas_of_patches(const dealii::DoFHandler<3>& dof_handler
       std::any_of(prescribed.begin(), prescribed.end(), [](const auto& p) { return p.loads.size() > 1; });
   if (!dealii::Utilities::MPI::max(int(shared), dof_handler.get_communicator())) return areas;
   for (const PatchReaction& of : patches) {
-    areas.push_back(zero_vector(dof_handler));
+    LoadOn ones{zero_vector(dof_handler), {}};
     add_force([&](const auto& visit) { for_each_face(dof_handler, body, of.patch, visit); },
-              [](const auto&, unsigned int) -> Vec3 { return Vec3::Ones(); }, areas.back());
-    areas.back().compress(dealii::VectorOperation::add);
+              [](const auto&, unsigned int) -> Vec3 { return Vec3::Ones(); }, ones);
+    ones.load.compress(dealii::VectorOperation::add);
+    areas.push_back(std::move(ones.load));
     const double round_off = 1e-12 * areas.back().linfty_norm();
     for (double& area : areas.back()) area = std::abs(area) > round_off ? std::abs(area) : 0;
   }

@@ -42,9 +42,10 @@ std::vector<dealii::IndexSet> prescribed_on_levels(const dealii::DoFHandler<3>& 
 /// @throws InputError with the motion that is left if the body can translate or rotate as a whole.
 void check_held(const std::vector<Prescribed>& prescribed, MPI_Comm comm);
 
-/// Right-hand side [N]: tractions, pressures, patch forces, gravity, point forces and body forces, these at `time` [s].
+/// Right-hand side [N]: tractions, pressures, patch forces, gravity, point forces and body forces, these at `time` [s];
+/// `material`: of all what acts on the cells of this material_id.
 DofVector load_vector(const dealii::DoFHandler<3>& dof_handler, const Body3& body, const GridProblem& problem,
-                      double time = 0);
+                      double time = 0, std::optional<unsigned int> material = {});
 
 /// One per patch with prescribed displacement, in the order of the loads; `imbalance` is internal force -
 /// load [N].  Patches that prescribe one degree of freedom share its force by the integrals of its shape function,

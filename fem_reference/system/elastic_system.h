@@ -5,6 +5,7 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/dofs/dof_handler.h>
 #include <deal.II/dofs/dof_tools.h>
+#include <deal.II/fe/fe_values.h>
 #include <deal.II/lac/la_parallel_vector.h>
 
 #include <functional>
@@ -27,6 +28,18 @@ inline DofVector zero_vector(const dealii::DoFHandler<3>& dof_handler) {
   dealii::IndexSet relevant;
   dealii::DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
   return DofVector(dof_handler.locally_owned_dofs(), relevant, dof_handler.get_communicator());
+}
+
+/// Gradients and weights of scalar elements in the cell that `values` are of.
+inline void set_shape(const dealii::FEValues<3>& values, CellShape& shape) {
+  const int n = int(values.dofs_per_cell), points = int(values.n_quadrature_points);
+  shape.gradients.resize(3 * points, n);
+  shape.weights.resize(points);
+  for (int q = 0; q < points; ++q) {
+    shape.weights[q] = values.JxW(q);
+    for (int a = 0; a < n; ++a)
+      for (int i = 0; i < 3; ++i) shape.gradients(3 * q + i, a) = values.shape_grad(a, q)[i];
+  }
 }
 
 /// Sums an Eigen matrix over all processes, entry by entry; every process gets the result.

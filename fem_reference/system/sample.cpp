@@ -299,68 +299,6 @@ std::vector<RegionMeans> measure_regions(const ElasticSystem& system, const Elas
   return regions;
 }
 
-namespace {
-
-// Integral over a face of the traction on the cell.
-Vec3 force_on_face(const dealii::Triangulation<3>::active_cell_iterator& cell, const CellLaw& law,
-                   const CellPressures& pressures, const dealii::FEFaceValues<3>& face,
-                   const std::vector<dealii::Tensor<2, 3>>& gradients, std::optional<double> mean_dilatation) {
-  Vec3 force = Vec3::Zero();
-  for (const unsigned int q : face.quadrature_point_indices()) {
-    const dealii::Tensor<2, 3>& h = gradients[q];
-    const Matrix3 F = deformation_gradient(h);
-    const double g = mean_dilatation.value_or(law.law ? dilatation(*law.law, F) : dealii::trace(h));
-    const Location at{cell, face.get_mapping().transform_real_to_unit_cell(cell, face.quadrature_point(q))};
-    const PointState state = state_at(law, h, pressure_at(law, pressures, at, g), g);
-    Vec3 area(face.normal_vector(q)[0], face.normal_vector(q)[1], face.normal_vector(q)[2]);
-    if (law.law) {  // of the deformed face: det F F^-T
-      Eigen::Matrix3d deformation;
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) deformation(i, j) = F[i][j];
-      area = deformation.determinant() * deformation.inverse().transpose() * area;
-    }
-    force += face.JxW(q) * state.stress * area;
-  }
-  return force;
-}
-
-}  // namespace
-
-std::vector<InterfaceForce> measure_interfaces(const ElasticSystem& system, const ElasticAnswer& answer,
-                                               const DofVector& displacement) {
-  const auto& fe = system.dof_handler.get_fe();
-  dealii::FEFaceValues<3> face(*system.body.mapping, fe, face_quadrature(system.body, system.degree + 1),
-                               dealii::update_gradients | dealii::update_JxW_values | dealii::update_normal_vectors |
-                                   dealii::update_quadrature_points);
-  dealii::FEValues<3> inside(*system.body.mapping, fe, cell_quadrature(system.body, system.degree + 1),
-                             dealii::update_gradients | dealii::update_JxW_values);
-  const dealii::FEValuesExtractors::Vector vector(0);
-  std::vector<dealii::Tensor<2, 3>> gradients(face.n_quadrature_points), of_cell(inside.n_quadrature_points);
-  std::map<std::pair<unsigned int, unsigned int>, Vec3> forces;
-  for (const auto& cell : system.dof_handler.active_cell_iterators())
-    for (const unsigned int f : cell->face_indices()) {
-      const unsigned int own = cell->material_id();
-      if (cell->at_boundary(f) || cell->neighbor(f)->material_id() == own) continue;
-      const unsigned int other = cell->neighbor(f)->material_id();
-      const CellLaw& law = system.laws[own];
-      std::optional<double> mean;
-      if (law.form == Form::mean_dilatation) {
-        inside.reinit(cell);
-        inside[vector].get_function_gradients(displacement, of_cell);
-        mean = dilatations(law, of_cell, inside.get_JxW_values()).front();
-      }
-      face.reinit(cell, f);
-      face[vector].get_function_gradients(displacement, gradients);
-      const Vec3 force = force_on_face(cell, law, answer.pressure, face, gradients, mean) / 2;
-      const auto at = forces.try_emplace({std::max(own, other), std::min(own, other)}, Vec3::Zero()).first;
-      at->second += own > other ? force : Vec3(-force);
-    }
-  std::vector<InterfaceForce> interfaces;
-  for (const auto& [materials, force] : forces)
-    interfaces.push_back({int(materials.first), int(materials.second), force});
-  return interfaces;
-}
-
 VolumeMeasure measure_volume(const Body3& body, const dealii::DoFHandler<3>& dof_handler,
                              const DofVector& displacement) {
   const auto& fe = dof_handler.get_fe();

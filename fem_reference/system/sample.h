@@ -37,10 +37,6 @@ NodalSolution at_own_nodes(const ElasticSystem& system, std::optional<Law> law, 
 std::vector<RegionMeans> measure_regions(const ElasticSystem& system, const ElasticAnswer& answer,
                                          const DofVector& displacement);
 
-/// Forces across the facets between cells of two materials: the mean of what the tractions of both sides give.
-std::vector<InterfaceForce> measure_interfaces(const ElasticSystem& system, const ElasticAnswer& answer,
-                                               const DofVector& displacement);
-
 struct VolumeMeasure {
   double change = 0;              ///< integral of det(I + grad u) - 1, divided by V
   double change_first_order = 0;  ///< integral of div u, divided by V

@@ -98,13 +98,16 @@ double longest_edge(const SolidShape& shape, double volume) {
   return std::max(shape.across / edges_across, std::cbrt(tetrahedra_in_cube * volume / most_in_region));
 }
 
-/// Of what lies in the box around a body, if that is known.
+/// Of what lies in the box around a body, of a surface in proportion to the box around that.
 double volume_within(const RegionPlace& place, const SolidShape& shape, const Mesh& mesh) {
   const auto* box = std::get_if<PatchRule::Box>(&place);
-  if (!box) return shape.volume;
-  const Vec3 low = box->low.cwiseMax(mesh.nodes.colwise().minCoeff().transpose()),
-             high = box->high.cwiseMin(mesh.nodes.colwise().maxCoeff().transpose());
-  return (high - low).cwiseMax(0).prod();
+  const Enclosed* surface = shape.borders.front().surface.get();
+  if (!box && !surface) return shape.volume;
+  const Vec3 own_low = box ? box->low : surface->box().low, own_high = box ? box->high : surface->box().high,
+             low = own_low.cwiseMax(mesh.nodes.colwise().minCoeff().transpose()),
+             high = own_high.cwiseMin(mesh.nodes.colwise().maxCoeff().transpose());
+  const double within = (high - low).cwiseMax(0).prod();
+  return box ? within : shape.volume * within / (own_high - own_low).prod();
 }
 
 /// Of tetrahedra: the cells of one region, by its number, painted over those of earlier ones.

@@ -70,8 +70,11 @@ double volume_stiffness_ratio(const MassSpringModel& model) {
       largest = std::max(largest, other.lame_lambda / other.shear_modulus);
     return largest - 1;
   }
-  if (const auto* volume = law_of<VolumeCorrection>(model)) return volume->kappa / affine_shear_modulus(model);
-  return 0;
+  const auto* volume = law_of<VolumeCorrection>(model);
+  if (!volume) return 0;
+  double largest = volume->kappa;
+  for (const VolumeCorrection& other : volume->regions) largest = std::max(largest, other.kappa);
+  return largest / affine_shear_modulus(model);
 }
 
 void calibrate(double shear_modulus, Network& network) {

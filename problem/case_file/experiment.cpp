@@ -289,6 +289,11 @@ Experiment Experiment::at(std::size_t setting) const {
   return one;
 }
 
+std::vector<IsotropicMaterial> Experiment::materials_of_part(std::size_t region) const {
+  if (region > 0) return region == listed.region ? listed.materials : std::vector{regions[region - 1].material};
+  return listed.region > 0 ? std::vector{materials.front()} : materials;
+}
+
 const IsotropicMaterial& Experiment::body_material(std::size_t setting) const {
   return materials[listed.region > 0 ? 0 : setting];
 }

@@ -184,6 +184,8 @@ struct Experiment {
   double setting_of(const IsotropicMaterial& body) const;
   /// The case with one material of each region: the list's of this number, counted as settings() are.
   Experiment at(std::size_t setting) const;
+  /// Of a region, by its number, or of what is in none (0), all materials of the list if it has one.
+  std::vector<IsotropicMaterial> materials_of_part(std::size_t region) const;
   /// The material of what is in no region at a setting.
   const IsotropicMaterial& body_material(std::size_t setting) const;
   /// Keeps the settings that are not `unwanted`.

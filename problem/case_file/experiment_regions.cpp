@@ -48,18 +48,23 @@ MaterialRegion read_region(const TomlValue& value, const Experiment& e) {
           read_place(table, e)};
 }
 
-/// The first modulus of a table that is a list of several.
-std::optional<TomlValue> list_in(const TomlTable& table) {
+/// The first modulus of a table that is a list of at least so many.
+std::optional<TomlValue> list_in(const TomlTable& table, std::size_t fewest) {
   for (const ModulusName& modulus : modulus_names)
-    if (const auto given = table.find(modulus.key); given && one_or_several(*given).size() > 1) return given;
+    if (const auto given = table.find(modulus.key);
+        given && given->node->is_array() && one_or_several(*given).size() >= fewest)
+      return given;
   return {};
 }
 
-/// Of which modulus a region's materials are a list: Poisson's ratio, or where it is the same of all, Young's modulus.
+/// Of which modulus a region's materials are a list: Poisson's ratio, or where it is the same of all (a list of one: is
+/// no list), Young's modulus.
 ListedModuli told_apart(std::size_t region, std::vector<IsotropicMaterial> materials, const TomlValue& list) {
   const double nu = materials.front().poisson_ratio;
+  const bool of_one = materials.size() == 1;
   const bool stiffness =
-      std::ranges::all_of(materials, [&](const auto& m) { return same_poisson_ratio(m.poisson_ratio, nu); });
+      of_one ? !list.key.ends_with("poisson_ratio")
+             : std::ranges::all_of(materials, [&](const auto& m) { return same_poisson_ratio(m.poisson_ratio, nu); });
   ListedModuli listed{region, stiffness, std::move(materials)};
   std::vector<double> known;
   for (const IsotropicMaterial& m : listed.materials) {
@@ -74,12 +79,6 @@ ListedModuli told_apart(std::size_t region, std::vector<IsotropicMaterial> mater
 
 /// What of a case is computed of one material alone, and what it may be instead; empty: nothing.
 std::optional<std::pair<std::string, SourceLocation>> of_one_material(const Experiment& e) {
-  if (!e.models.empty() && !e.body.is_voxels())
-    return {
-        {fmt::format("compare.models: {} on a block is of one material (allowed: voxels or voxel_edge_m in [body]; or "
-                     "models = [], with elements in [reference])",
-                     e.models.front().label),
-         e.models.front().where}};
   const SourceLocation& region = e.regions.front().where;
   const auto says = [&](const char* what, const char* allowed) {
     return std::pair{fmt::format("region: '{}': {} (allowed: {})", e.regions.front().name, what, allowed), region};
@@ -147,11 +146,11 @@ std::vector<MaterialRegion> read_regions(const TomlTable& document, const Experi
 
 ListedModuli read_listed(const TomlTable& document, const Experiment& e) {
   ListedModuli listed;
-  std::optional<TomlValue> first = list_in(TomlTable(document.at("material"), keys_of("material")));
+  std::optional<TomlValue> first = list_in(TomlTable(document.at("material"), keys_of("material")), 2);
   const std::vector<TomlValue> tables = document.tables("region");
   for (std::size_t r = 0; r < tables.size(); ++r) {
     const TomlTable table(tables[r], keys_of("region"));
-    const std::optional<TomlValue> list = list_in(table);
+    const std::optional<TomlValue> list = list_in(table, 1);
     if (!list) continue;
     if (first)
       refuse(*list,

@@ -248,7 +248,7 @@ constexpr Key expect_keys[] = {
   {"model",           "whose value is judged",                          "a model of [compare], or fem, fem_q1, ...",          required,               "\"hybmss\""},
   {"measure",         "a name of results.csv",                          "the name of a row",                                  required,               "\"displacement_error\""},
   {"source",          "where the expected value is from",               "analytic, extrapolated FEM, published, measured, regression",  required,               "\"analytic\""},
-  {"poisson_ratio",   "at which it is judged",                          "a finite number, one of the case's",                 "at each", "0.25"},
+  {"poisson_ratio",   "at which it is judged, or the E listed", "a finite number, one of the case's",           "at each", "0.25"},
   {"cells",           "at which it is judged",                          "[nx, ny, nz], integers from 1 to 1000",              "at each", "[12, 2, 2]"},
   {"value",           "the expected value, in the unit of the measure", "a finite number",                                    "the reference's, of extrapolated FEM", "0"},
   {"within",          "tolerance, in the same unit",          from_0,                                               "one of the three", "0.04"},

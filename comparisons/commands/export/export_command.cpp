@@ -263,6 +263,11 @@ int export_springs(const ExportRequest& request) {
   require_springs_ending(file);
   require_writable(file);
   const SpringsFile springs = springs_of(request, !request.whole_cubes);
+  if (!springs.regions.empty() && !springs.model.network.cells.cut())
+    throw InputError(fmt::format(
+        "{}: region '{}': whole cubes of several materials are in no springs file (allowed: cut cells, of a body of "
+        "voxels without cut = false or --whole-cubes)",
+        request.what, springs.regions.front().name));
   write_springs(file, springs);
   report(file, springs);
   report_averaging(springs);

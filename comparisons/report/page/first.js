@@ -203,7 +203,7 @@ function middleSeconds(model) {
 
 function firstFacts(model) {
   const box = document.getElementById('first-facts');
-  const parts = judgedCases().flatMap(result => result.regions.map(region => `${partName(region)} E = ${moduliOf(result, region).E} Pa, ν = ${moduliOf(result, region).nu}`));
+  const parts = judgedCases().flatMap(result => result.regions.map(region => `${partName(region)} E = ${moduliOf(region).E} Pa, ν = ${moduliOf(region).nu}`));
   if (!model && parts.length === 0) return box.remove();
   const nus = distinct(judgedCases().flatMap(result => result.nus)), ordinary = nus.filter(nu => nu >= 0);
   const fact = (term, text) => text ? [el('dt', {}, term), el('dd', {}, text)] : [];

@@ -8,19 +8,15 @@ function sectionPicture(result) {
 
 const partName = ({name}) => name || 'in no region';
 
-/// Of a region {E, nu} as text, all values of what is listed.
-function moduliOf(result, region) {
-  const listed = region.name === result.listed.part, stiffness = result.listed.symbol.startsWith('E');
-  return {E: listed && stiffness ? result.nus.map(E => number(E)).join(', ') : number(region.youngs_modulus_Pa),
-    nu: listed && !stiffness ? result.nus.map(nuText).join(', ') : nuText(region.poisson_ratio)};
-}
+/// Of a region {E, nu} as text, of all materials that it is given.
+const moduliOf = region => ({E: distinct(region.youngs_modulus_Pa.map(E => number(E))).join(', '), nu: distinct(region.poisson_ratio.map(nuText)).join(', ')});
 
 /// A line for each material.
 function regionsTable(result) {
   const whole = result.regions.reduce((sum, region) => sum + region.volume_m3, 0), cells = (result.regions[0] || {cells: []}).cells;
   return table('regions', ['part', right('E [Pa]'), right('ν'), right('density [kg/m³]'), right('volume [m³]'), right('share'), ...(cells.length > 0 ? [right('cells')] : [])],
     result.regions.map((region, i) => tr(el('td', {}, el('i', {class: 'sample', style: {background: region.colour}}), ' ', partName(region)),
-      ...[moduliOf(result, region).E, moduliOf(result, region).nu, number(region.density_kg_m3),
+      ...[moduliOf(region).E, moduliOf(region).nu, number(region.density_kg_m3),
           number(region.volume_m3), percent(100 * region.volume_m3 / whole), ...(cells.length > 0 ? [region.cells.join(', ')] : [])]
         .map(text => el('td', {class: 'number'}, text)))));
 }

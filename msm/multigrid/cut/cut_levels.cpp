@@ -13,6 +13,11 @@ namespace {
 
 constexpr std::size_t smallest_cut_level = 300;  // points
 
+// Stiffness of bonds over that on the finer level.  Many bonds of a coarse cell hold it like glue: with their full
+// stiffness a stiff part in soft cells turns all of the cells at it, and its rotations see levels three to ten times
+// too stiff.
+constexpr double softer_bonds = 0.25;
+
 /// The smallest cubes become their parents; others stay.  In edges of the coarser level.
 LatticeCube parent_of(const LatticeCube& c) {
   return {{c.at[0] >> 1, c.at[1] >> 1, c.at[2] >> 1}, std::max(1, c.size / 2)};
@@ -142,7 +147,8 @@ void add_anchors(const std::vector<std::vector<int>>& at_point, const CutLevel& 
   for (const InterfaceBond& b : fine.bonds) {
     const MeanAbove first(b.corners[0], b.weights[0], at_point, fine, coarse),
         second(b.corners[1], b.weights[1], at_point, fine, coarse);
-    coarse.bonds.push_back({{first.corners, second.corners}, {first.weights, second.weights}, b.stiffness});
+    coarse.bonds.push_back(
+        {{first.corners, second.corners}, {first.weights, second.weights}, softer_bonds * b.stiffness});
   }
 }
 

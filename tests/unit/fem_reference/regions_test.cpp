@@ -229,6 +229,29 @@ TEST_P(FemRegions, OfOneMaterialAreNone) {
   EXPECT_LT((two.displacement - one.displacement).norm(), 1e-6 * one.displacement.norm());
 }
 
+/// A block hung by its top, with a box of a second, heavier material in it: edges where the stress has no limit.
+TEST_P(FemRegions, ABoxIsHeldByItsWeight) {
+  for (const char* law : {"linear", "hencky"}) {
+    fem::GridProblem problem = bar(GetParam(), 0, {1e4, 0.3, 10}, {1e6, 0.499, 50});
+    problem.law = law;
+    std::size_t number = 0;
+    const auto mark = [&](const auto& cell) {
+      Vec3 middle = Vec3::Zero();
+      for (const int n : cell) middle += problem.coarse.nodes.row(n).transpose() / static_cast<double>(cell.size());
+      problem.coarse.materials[number++] = (middle - size / 2).cwiseAbs().maxCoeff() < 0.25;
+    };
+    for (const Hexahedron& cell : problem.coarse.hexahedra) mark(cell);
+    for (const Tetrahedron& cell : problem.coarse.tetrahedra) mark(cell);
+    problem.loads = {PrescribedDisplacement{"z_max", {0.0, 0.0, 0.0}}, Gravity{{3, 0, -10}},
+                     PatchForce{"x_max", {100, 0, 0}}};
+    const fem::Solution s = fem::solve_grid(problem);
+    ASSERT_TRUE(s.ok) << s.message;
+    const double mass = 50 * std::pow(0.5, 3);
+    ASSERT_EQ(s.interfaces.size(), 1u);
+    EXPECT_LT((s.interfaces[0].force - mass * Vec3(-3, 0, 10)).norm(), 1e-6 * s.reactions[0].force.norm()) << s.form;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Elements, FemRegions, testing::Values("q1", "q2", "p1", "p2"));
 
 TEST(FemRegionsInBending, ConvergeInAsManyStepsAtAnyContrast) {

@@ -285,6 +285,13 @@ TEST_F(RegionSurfaces, ThatPokeOutOfTheBodyAreClippedAndThoseThatOverlapPaintedO
   EXPECT_EQ(facets_of_one_cell(mesh), outer_facets(mesh).size());
 }
 
+TEST_F(RegionSurfaces, ThatAreThinAndPokeOutTakeTheTetrahedraOfWhatIsInside) {
+  Mesh mesh = cube();
+  mark_regions({enclosed("sheet.stl", test::moved(test::box({19, 19, 1. / 60}, 1), 1, {-9, -9, 0.44}))}, 1, mesh);
+  EXPECT_NEAR(volume_of(mesh, 1), 1. / 60, 1e-3 / 60);
+  EXPECT_GT(std::ranges::count(mesh.materials, 1), 5000);
+}
+
 TEST_F(RegionSurfaces, ThatTouchOrNestLeaveNoGap) {
   Mesh mesh = cube();
   const Surface left = test::moved(test::box({0.25, 0.5, 0.5}, 2), 1, {0.25, 0.25, 0.25}),
