@@ -37,17 +37,28 @@ struct sp_averaged averaged_of(const json& law) {
           law.at("warping")};
 }
 
+/// laws.measured_cells, if there.
+std::vector<double> form_of(const json& file) {
+  const json& laws = file.at("laws");
+  return laws.contains("measured_cells") ? flat<double>(laws.at("measured_cells").at("form_N_m"))
+                                         : std::vector<double>{};
+}
+
 /// How far the forces of the branches are from those of the file's check, after its steps, of the largest [1].
 double branches_off(const json& file, const std::vector<double>& X, const std::vector<int>& cells,
                     const std::vector<double>& edges, const sp_parts& parts) {
   const json of = file.at("relaxation"), check = file.at("check");
   const auto share = flat<double>(of.at("share")), time = flat<double>(of.at("time_s")),
              x = flat<double>(check.at("position_m")), wanted = flat<double>(check.at("branch_force_N"));
-  const sp_branches branches = {share.size(),
-                                share.data(),
-                                time.data(),
-                                {SP_HENCKY, of.at("shear_modulus_Pa"), 0, of.at("bending"), of.at("coupling"),
-                                 of.at("torsion"), of.at("twist"), of.at("warping")}};
+  const std::vector<double> form = form_of(file);
+  sp_branches branches = {share.size(), share.data(), time.data(), {}, form.data()};
+  if (form.empty())
+    branches = {share.size(),
+                share.data(),
+                time.data(),
+                {SP_HENCKY, of.at("shear_modulus_Pa"), 0, of.at("bending"), of.at("coupling"), of.at("torsion"),
+                 of.at("twist"), of.at("warping")},
+                nullptr};
   std::vector<double> states(edges.size() * SP_STRAINS * (1 + share.size())), f(x.size()), at = X;
   for (std::size_t step = 0; step < check.at("step_s").size(); ++step) {
     for (std::size_t i = 0; i < x.size(); ++i) at[i] = X[i] + check["progress"][step].get<double>() * (x[i] - X[i]);
@@ -89,8 +100,7 @@ int main(int count, char** arguments) try {
              bonded = flat<int>(bonds.value("nodes", json::array()));
   const auto bond_weights = flat<double>(bonds.value("weights", json::array())),
              bond_stiffness = flat<double>(bonds.value("stiffness_N_m", json::array()));
-  const auto form =
-      laws.contains("measured_cells") ? flat<double>(laws.at("measured_cells").at("form_N_m")) : std::vector<double>{};
+  const std::vector<double> form = form_of(file);
   const sp_parts parts = {fraction.empty() ? nullptr : fraction.data(), mean.data(), mixed.data(), variance.data()};
   const auto energy = [&](std::vector<double> x, double* f) {
     sp_carry(carried_nodes.size(), carried_nodes.data(), carried_by.data(), x.data());

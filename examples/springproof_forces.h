@@ -254,6 +254,95 @@ static double sp_averaged_cell(struct sp_averaged law, double edge, struct sp_pa
   return energy;
 }
 
+/* Eigenvectors of a symmetric matrix as the columns of V, by Jacobi's rotations; A's diagonal gets the eigenvalues. */
+static void sp_eigenvectors(double A[3][3], double V[3][3]) {
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) V[i][j] = i == j;
+  for (int turn = 0; turn < 30; ++turn) {
+    const int p = turn % 3, q = (p + 1) % 3;
+    if (fabs(A[p][q]) <= 1e-17 * (fabs(A[p][p]) + fabs(A[q][q]))) continue;
+    const double theta = (A[q][q] - A[p][p]) / (2 * A[p][q]);
+    const double t = (theta < 0 ? -1 : 1) / (fabs(theta) + sqrt(theta * theta + 1)), c = 1 / sqrt(t * t + 1), s = t * c;
+    for (int k = 0; k < 3; ++k) {
+      const double a = A[k][p], b = A[k][q], u = V[k][p], v = V[k][q];
+      A[k][p] = c * a - s * b, A[k][q] = s * a + c * b;
+      V[k][p] = c * u - s * v, V[k][q] = s * u + c * v;
+    }
+    for (int k = 0; k < 3; ++k) {
+      const double a = A[p][k], b = A[q][k];
+      A[p][k] = c * a - s * b, A[q][k] = s * a + c * b;
+    }
+  }
+}
+
+/* A measured cell: y = (edge log U, v), U^2 = F^T F; log U as xx, yy, zz, 2 yz, 2 zx, 2 xy, v by pattern and axis; V
+ * the eigenvectors of C = F^T F, C then has its eigenvalues. */
+static const int sp_strain_of[6][2] = {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {2, 0}, {0, 1}};
+struct sp_stretched {
+  double C[3][3], V[3][3], y[18];
+};
+
+static struct sp_stretched sp_stretched_of(const struct sp_state* a, double edge) {
+  struct sp_stretched at = {{{0}}, {{0}}, {0}};
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      for (int k = 0; k < 3; ++k) at.C[i][j] += a->F[k][i] * a->F[k][j];
+  sp_eigenvectors(at.C, at.V);
+  for (int e = 0; e < 6; ++e)
+    for (int k = 0; k < 3; ++k)
+      at.y[e] += (e < 3 ? 0.5 : 1) * edge * log(at.C[k][k]) * at.V[sp_strain_of[e][0]][k] * at.V[sp_strain_of[e][1]][k];
+  for (int m = 0; m < 12; ++m) at.y[6 + m] = a->v[m / 3][m % 3];
+  return at;
+}
+
+/* s = M y; form: 171 numbers of laws.measured_cells.form_N_m, the lower triangle of M row by row [N/m].  Returns y . s
+ * / 2. */
+static double sp_form(const double* form, const double y[18], double s[18]) {
+  double energy = 0;
+  for (int i = 0; i < 18; ++i) s[i] = 0;
+  for (int i = 0; i < 18; ++i)
+    for (int j = 0; j <= i; ++j, ++form) {
+      s[i] += *form * y[j];
+      if (j < i) s[j] += *form * y[i];
+    }
+  for (int i = 0; i < 18; ++i) energy += 0.5 * s[i] * y[i];
+  return energy;
+}
+
+/* From s = dW/dy. */
+static void sp_add_stretched(const struct sp_state* a, const struct sp_stretched* at, double edge, const double s[18],
+                             const int n[8], double* f) {
+  double S[3][3], w[4][3], of_F[3][3] = {{0}};
+  for (int e = 0; e < 6; ++e)
+    S[sp_strain_of[e][0]][sp_strain_of[e][1]] = S[sp_strain_of[e][1]][sp_strain_of[e][0]] = edge * s[e];
+  for (int m = 0; m < 12; ++m) w[m / 3][m % 3] = s[6 + m];
+  for (int p = 0; p < 3; ++p)
+    for (int q = 0; q < 3; ++q) { /* in axes of the eigenvectors: times the divided difference of log(C) / 2 */
+      const double t = at->C[p][p] / at->C[q][q] - 1;
+      double along = 0;
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) along += at->V[i][p] * S[i][j] * at->V[j][q];
+      along *= (t == 0 ? 1 : log1p(t) / t) / (2 * at->C[q][q]);
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+          for (int k = 0; k < 3; ++k) of_F[i][j] += 2 * a->F[i][k] * at->V[k][p] * along * at->V[j][q];
+    }
+  sp_add_cell(a, of_F, w, n, f);
+}
+
+/* W = y . M y / 2; infinite if the cell is inside out. */
+static double sp_measured_cell(const double* form, double edge, struct sp_part part, const int n[8], const double* x,
+                               double* f) {
+  struct sp_state a = sp_state_of(edge, part, n, x);
+  double s[18], normal[3];
+  sp_cross(a.F[0], a.F[1], normal);
+  if (!(normal[0] * a.F[2][0] + normal[1] * a.F[2][1] + normal[2] * a.F[2][2] > 0)) return INFINITY;
+  struct sp_stretched at = sp_stretched_of(&a, edge);
+  const double energy = sp_form(form, at.y, s);
+  if (f) sp_add_stretched(&a, &at, edge, s, n, f);
+  return energy;
+}
+
 /* Branches of a material that relaxes, relaxation of the file: an overstrain Q of each follows Q' + Q / time = E', E
  * the strains of a cell: the deviator of Green-Lagrange's strain, row by row, and the v of sp_state. */
 enum { SP_STRAINS = 21 };
@@ -261,8 +350,38 @@ struct sp_branches {
   size_t count;
   const double *share, *time;
   struct sp_averaged
-      cells; /* shear_modulus and hourglass springs of the branches; curve and lame_lambda are not read */
+      cells;          /* shear_modulus and hourglass springs of the branches; curve and lame_lambda are not read */
+  const double* form; /* of measured cells in their place; else null */
 };
+
+/* v without the mean of its first three. */
+static void sp_without_volume(double v[18]) {
+  const double mean = (v[0] + v[1] + v[2]) / 3;
+  for (int i = 0; i < 3; ++i) v[i] -= mean;
+}
+
+/* sp_relaxing_cell of a measured cell: E is its y without the mean of the first three, the last numbers are unused. */
+static double sp_relaxing_measured(struct sp_branches all, const double* form, double edge, struct sp_part part,
+                                   const int n[8], const double* x, double dt, double* state, double* f) {
+  struct sp_state a = sp_state_of(edge, part, n, x);
+  struct sp_stretched at = sp_stretched_of(&a, edge);
+  double sum[18] = {0}, s[18], energy = 0;
+  sp_without_volume(at.y);
+  for (size_t b = 0; b < all.count; ++b) {
+    double* Q = state + SP_STRAINS * (1 + b);
+    const double ratio = dt / all.time[b], phi = ratio > 0 ? -expm1(-ratio) / ratio : 1;
+    for (int i = 0; i < 18; ++i) {
+      Q[i] = exp(-ratio) * Q[i] + phi * (at.y[i] - state[i]);
+      sum[i] += all.share[b] * Q[i];
+    }
+    energy += all.share[b] * sp_form(form, Q, s);
+  }
+  for (int i = 0; i < 18; ++i) state[i] = at.y[i];
+  sp_form(form, sum, s);
+  sp_without_volume(s);
+  if (f) sp_add_stretched(&a, &at, edge, s, n, f);
+  return energy;
+}
 
 /* Advances the branches of a cell by a step of dt [s] that ends at x, exactly for strains that change evenly, and adds
  * their forces there.  state: SP_STRAINS * (1 + count) numbers, the strains and each branch's Q; zeros: relaxed at
@@ -307,69 +426,12 @@ static double sp_relaxing(size_t cells, const int* nodes, const double* edges, s
                           struct sp_branches all, const double* x, double dt, double* states, double* f) {
   double energy = 0;
   for (size_t c = 0; c < cells; ++c)
-    energy += sp_relaxing_cell(all, edges[c], sp_part_of(parts, c), nodes + 8 * c, x, dt,
-                               states + SP_STRAINS * (1 + all.count) * c, f);
-  return energy;
-}
-
-/* Eigenvectors of a symmetric matrix as the columns of V, by Jacobi's rotations; A's diagonal gets the eigenvalues. */
-static void sp_eigenvectors(double A[3][3], double V[3][3]) {
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) V[i][j] = i == j;
-  for (int turn = 0; turn < 30; ++turn) {
-    const int p = turn % 3, q = (p + 1) % 3;
-    if (fabs(A[p][q]) <= 1e-17 * (fabs(A[p][p]) + fabs(A[q][q]))) continue;
-    const double theta = (A[q][q] - A[p][p]) / (2 * A[p][q]);
-    const double t = (theta < 0 ? -1 : 1) / (fabs(theta) + sqrt(theta * theta + 1)), c = 1 / sqrt(t * t + 1), s = t * c;
-    for (int k = 0; k < 3; ++k) {
-      const double a = A[k][p], b = A[k][q], u = V[k][p], v = V[k][q];
-      A[k][p] = c * a - s * b, A[k][q] = s * a + c * b;
-      V[k][p] = c * u - s * v, V[k][q] = s * u + c * v;
-    }
-    for (int k = 0; k < 3; ++k) {
-      const double a = A[p][k], b = A[q][k];
-      A[p][k] = c * a - s * b, A[q][k] = s * a + c * b;
-    }
-  }
-}
-
-/* A measured cell: W = y . M y / 2, y = (edge log U, v), U^2 = F^T F; log U as xx, yy, zz, 2 yz, 2 zx, 2 xy, v by
- * pattern and axis.  form: its 171 numbers of laws.measured_cells.form_N_m, the lower triangle of M row by row [N/m].
- * Infinite if the cell is inside out. */
-static double sp_measured_cell(const double* form, double edge, struct sp_part part, const int n[8], const double* x,
-                               double* f) {
-  static const int of[6][2] = {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {2, 0}, {0, 1}};
-  struct sp_state a = sp_state_of(edge, part, n, x);
-  double C[3][3], V[3][3], y[18] = {0}, s[18] = {0}, S[3][3], w[4][3], of_F[3][3] = {{0}}, normal[3], energy = 0;
-  sp_cross(a.F[0], a.F[1], normal);
-  if (!(normal[0] * a.F[2][0] + normal[1] * a.F[2][1] + normal[2] * a.F[2][2] > 0)) return INFINITY;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) C[i][j] = a.F[0][i] * a.F[0][j] + a.F[1][i] * a.F[1][j] + a.F[2][i] * a.F[2][j];
-  sp_eigenvectors(C, V);
-  for (int e = 0; e < 6; ++e)
-    for (int k = 0; k < 3; ++k) y[e] += (e < 3 ? 0.5 : 1) * edge * log(C[k][k]) * V[of[e][0]][k] * V[of[e][1]][k];
-  for (int m = 0; m < 12; ++m) y[6 + m] = a.v[m / 3][m % 3];
-  for (int i = 0; i < 18; ++i)
-    for (int j = 0; j <= i; ++j, ++form) {
-      s[i] += *form * y[j];
-      if (j < i) s[j] += *form * y[i];
-    }
-  for (int i = 0; i < 18; ++i) energy += 0.5 * s[i] * y[i];
-  if (!f) return energy;
-  for (int e = 0; e < 6; ++e) S[of[e][0]][of[e][1]] = S[of[e][1]][of[e][0]] = edge * s[e];
-  for (int m = 0; m < 12; ++m) w[m / 3][m % 3] = s[6 + m];
-  for (int p = 0; p < 3; ++p)
-    for (int q = 0; q < 3; ++q) { /* in axes of the eigenvectors: times the divided difference of log(C) / 2 */
-      const double t = C[p][p] / C[q][q] - 1;
-      double along = 0;
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) along += V[i][p] * S[i][j] * V[j][q];
-      along *= (t == 0 ? 1 : log1p(t) / t) / (2 * C[q][q]);
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j)
-          for (int k = 0; k < 3; ++k) of_F[i][j] += 2 * a.F[i][k] * V[k][p] * along * V[j][q];
-    }
-  sp_add_cell(&a, of_F, w, n, f);
+    if (all.form)
+      energy += sp_relaxing_measured(all, all.form + 171 * c, edges[c], sp_part_of(parts, c), nodes + 8 * c, x, dt,
+                                     states + SP_STRAINS * (1 + all.count) * c, f);
+    else
+      energy += sp_relaxing_cell(all, edges[c], sp_part_of(parts, c), nodes + 8 * c, x, dt,
+                                 states + SP_STRAINS * (1 + all.count) * c, f);
   return energy;
 }
 

@@ -109,21 +109,32 @@ def add_cells(cells, g, F, q, w, stress, f):  # w: dE/dv, v = F^T q; stress: dE/
     total = stress + np.einsum("cmi,cmj->cij", q, w)
     np.add.at(f, cells["nodes"], -np.einsum("cij,caj->cai", total, g) - np.einsum("cij,cmj,am->cai", F, w, PATTERN))
 
-def measured(law, cells, x, f):
+def stretched(cells, x):  # of measured cells: y = (l log U, v), and dE/dx of s = dE/dy
     g, F, q = deformation(cells, x)
-    v, l, form = np.einsum("cij,cmi->cmj", F, q), cells["edge_m"], np.zeros((len(F), 18, 18))
-    i, j = np.tril_indices(18)
-    form[:, i, j] = form[:, j, i] = law["form_N_m"].reshape(len(F), -1)
+    v, l = np.einsum("cij,cmi->cmj", F, q), cells["edge_m"]
     C, V = np.linalg.eigh(np.einsum("cki,ckj->cij", F, F))
     e = np.einsum("cik,ck,cjk->cij", V, np.log(C) / 2, V)  # log U
     strain = l * np.stack([e[:, 0, 0], e[:, 1, 1], e[:, 2, 2], 2 * e[:, 1, 2], 2 * e[:, 2, 0], 2 * e[:, 0, 1]], axis=1)
-    s = np.einsum("cij,cj->ci", form, np.concatenate([strain, v.reshape(-1, 12)], axis=1))
     t = C[:, :, None] / C[:, None, :] - 1
     slope = np.where(t == 0, 1, np.log1p(t) / np.where(t == 0, 1, t)) / (2 * C[:, None, :])  # divided differences of log(C) / 2
-    S = np.einsum("cki,ckl,clj->cij", V, l * s[:, [[0, 5, 4], [5, 1, 3], [4, 3, 2]]], V) * slope
-    P = 2 * np.einsum("cik,ckl,clm,cjm->cij", F, V, S, V)
-    P[np.linalg.det(F) <= 0] = np.nan  # inside out
-    add_cells(cells, g, F, q, s[:, 6:].reshape(-1, 4, 3), P, f)
+    def pull(s, f):
+        S = np.einsum("cki,ckl,clj->cij", V, l * s[:, [[0, 5, 4], [5, 1, 3], [4, 3, 2]]], V) * slope
+        P = 2 * np.einsum("cik,ckl,clm,cjm->cij", F, V, S, V)
+        P[np.linalg.det(F) <= 0] = np.nan  # inside out
+        add_cells(cells, g, F, q, s[:, 6:].reshape(-1, 4, 3), P, f)
+    return np.concatenate([strain, v.reshape(-1, 12)], axis=1), pull
+
+def times_form(law, y):  # M y, M by its lower triangle
+    form, (i, j) = np.zeros((len(y), 18, 18)), np.tril_indices(18)
+    form[:, i, j] = form[:, j, i] = law["form_N_m"].reshape(len(y), -1)
+    return np.einsum("cij,cj->ci", form, y)
+
+def without_volume(y):  # the mean of its first three
+    return y - np.where(np.arange(18) < 3, y[..., :3].mean(axis=-1, keepdims=True), 0)
+
+def measured(law, cells, x, f):
+    y, pull = stretched(cells, x)
+    pull(times_form(law, y), f)
 
 def materials(law, cells):  # the constants and the cells of each material
     if "material" not in cells: return [(law, cells)]
@@ -159,20 +170,28 @@ def averaged(law, cells, x, f):
 
 def relax(s, dt, x):
     """Advances the branches by a step of dt [s] that ends at x, exactly for strains that change evenly; dt = np.inf: relaxed at x."""
-    r, (_, F, q) = s["relaxation"], deformation(s["cells"], carry(s, x.copy()))
-    E = (np.einsum("cki,ckj->cij", F, F) - np.eye(3)) / 2
-    E = np.concatenate([E - np.trace(E, axis1=1, axis2=2)[:, None, None] / 3 * np.eye(3), np.einsum("cij,cmi->cmj", F, q)], axis=1)
+    r, E = s["relaxation"], strains(s, x)
     if "Q" not in r: r["E"], r["Q"] = np.zeros(E.shape), np.zeros(r["share"].shape + E.shape)  # relaxed at rest
-    ratio = (dt / r["time_s"])[:, None, None, None]
+    ratio = (dt / r["time_s"]).reshape(-1, *[1] * E.ndim)
     r["Q"] = np.exp(-ratio) * r["Q"] - (np.expm1(-ratio) / ratio if dt > 0 else -1) * (E - r["E"])
     r["E"] = E
 
+def strains(s, x):  # that branches follow
+    if "measured_cells" in s["laws"]: return without_volume(stretched(s["cells"], carry(s, x.copy()))[0])
+    _, F, q = deformation(s["cells"], carry(s, x.copy()))
+    E = (np.einsum("cki,ckj->cij", F, F) - np.eye(3)) / 2
+    return np.concatenate([E - np.trace(E, axis1=1, axis2=2)[:, None, None] / 3 * np.eye(3), np.einsum("cij,cmi->cmj", F, q)], axis=1)
+
 def branch_forces(s, x):
     """The forces of the branches at x, to which they were advanced last [N], n x 3."""
-    r, cells, f = s["relaxation"], s["cells"], np.zeros(x.shape)
-    (g, F, q), Q = deformation(cells, carry(s, x.copy())), np.einsum("b,bcij->cij", r["share"], r["Q"])
-    stress = (2 * r["shear_modulus_Pa"] * moments(cells)[0] * cells["edge_m"]**3)[:, None, None] * np.einsum("cij,cjk->cik", F, Q[:, :3])
-    add_cells(cells, g, F, q, hourglass_springs(r, cells, Q[:, 3:]), stress, f)
+    r, cells, f, at = s["relaxation"], s["cells"], np.zeros(x.shape), carry(s, x.copy())
+    Q = np.tensordot(r["share"], r["Q"], 1)
+    if law := s["laws"].get("measured_cells"):
+        stretched(cells, at)[1](without_volume(times_form(law, Q)), f)
+    else:
+        g, F, q = deformation(cells, at)
+        stress = (2 * r["shear_modulus_Pa"] * moments(cells)[0] * cells["edge_m"]**3)[:, None, None] * np.einsum("cij,cjk->cik", F, Q[:, :3])
+        add_cells(cells, g, F, q, hourglass_springs(r, cells, Q[:, 3:]), stress, f)
     return hand_back(s, f)
 
 def directions(s, N, share):  # of the springs of a lattice of cells; of other networks all alike

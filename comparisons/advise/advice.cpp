@@ -49,9 +49,9 @@ class Costs {
     Choice c{label, r, p, {}, 0, {}, {}, "", other_ratio(forecast_, label), p.error <= wish.error, Budget::within};
     const Speed& speed = speed_of(label);
     if (speed.failure.empty()) {
-      const auto measured = forecast_.measuring.find(label);
+      const auto made = forecast_.making.find(label);
       c.seconds = (is_element(label) ? 1 : scale_) * speed.solve_seconds(r.cells) +
-                  (measured == forecast_.measuring.end() ? 0 : measured->second * r.cells);
+                  (made == forecast_.making.end() ? 0 : made->second * r.cells);
       c.MiB = speed.MiB_per_cell * r.cells;
     }
     c.unmeasured = speed.failure;

@@ -37,7 +37,7 @@ struct Forecast {
   LoadShares shares;
   std::vector<Resolution> resolutions;        ///< ascending
   std::vector<std::string> models;            ///< labels
-  std::map<std::string, double> measuring;    ///< CPU time per cell [s] of models whose cells are measured, by label
+  std::map<std::string, double> making;       ///< CPU time per cell [s] of cells measured or refined, by label
   std::map<std::string, StepCost> cut_steps;  ///< of the models in cut cells, by label; others: of the machine's blocks
   /// Of a model, or "fem_q1", "fem_q2".
   std::function<std::optional<Prediction>(const std::string& model, const Resolution&)> predict;

@@ -1,6 +1,7 @@
 // Advice as words, a table and JSON.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "comparisons/advise/advice.h"
@@ -61,6 +62,27 @@ void recommend(const Advice& a, const Choice& best, const Choice* element, std::
                     ".");
   if (a.forecast.shares.largest() == "bending" && best.resolution.across > 0 && best.resolution.across < 2)
     words.push_back("One cell across bends by its hourglass springs alone.");
+}
+
+/// Which of measuring cells and refining them costs less for the wanted error.
+void weigh(const Advice& a, std::vector<std::string>& words) {
+  const auto made_by = [&](const char* how) -> const Choice* {
+    const auto at = std::find_if(a.choices.begin(), a.choices.end(),
+                                 [&](const Choice& c) { return c.model.ends_with(how) && c.accurate && c.seconds; });
+    return at == a.choices.end() ? nullptr : &*at;
+  };
+  const Choice *measured = made_by(" coarsened=true"), *refined = made_by(" accuracy");
+  if (!measured || !refined) return;
+  const auto cost = [](const Choice& c) {
+    return fmt::format("{:.0f} cells, {:.2g} s of processor once", c.resolution.cells, *c.seconds);
+  };
+  words.push_back(fmt::format(
+      "Measured cells (coarsened: {}) or refined ones (accuracy: {}): {} cost less to make{}.", cost(*measured),
+      cost(*refined), *measured->seconds < *refined->seconds ? "measured ones" : "refined ones",
+      measured->ms_per_step && refined->ms_per_step
+          ? fmt::format(", and steps of {:.2g} s take {:.3g} ms beside {:.2g} s and {:.3g} ms", measured->safe_step,
+                        *measured->ms_per_step, refined->safe_step, *refined->ms_per_step)
+          : ""));
 }
 
 /// The closest of the models that are the wanted solid.
@@ -143,6 +165,7 @@ std::vector<std::string> words_of(const Advice& a) {
     recommend(a, a.choices.front(), element, words);
   else
     say_none(a, element, words);
+  weigh(a, words);
   return words;
 }
 

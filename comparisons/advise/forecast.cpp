@@ -71,6 +71,10 @@ std::vector<std::string> notes_of(const Pilot& pilot) {
     out.push_back(
         "models without a suffix are in cut cells where they can, 'cut=false' in whole cubes; 'coarsened=true': each "
         "cell is measured once in finer ones, some 7 ms of processor, and kept");
+  for (const PilotModel& m : pilot.models)
+    for (std::size_t i = 0; i < m.promised.size(); ++i)
+      out.push_back(fmt::format("{} = {:.2g} in [body] makes {:.0f} cells, {:.2g} % off", m.label, m.promised[i],
+                                m.cells[i], 100 * m.errors[i]));
   return out;
 }
 
@@ -99,7 +103,7 @@ Forecast forecast_from(const std::vector<Pilot>& pilots) {
   for (const PilotModel& m : pilot.models) {
     out.models.push_back(m.label);
     if (m.step) out.cut_steps[m.label] = *m.step;
-    if (m.measuring > 0) out.measuring[m.label] = m.measuring;
+    if (m.making > 0) out.making[m.label] = m.making;
   }
   out.resolutions = resolutions_of(pilot);
   out.predict = [pilots](const std::string& label, const Resolution& r) {

@@ -11,6 +11,7 @@
 #include "comparisons/judge/deformation.h"
 #include "comparisons/judge/measures.h"
 #include "comparisons/judge/reference_value.h"
+#include "comparisons/prepare/refined_lattice.h"
 #include "comparisons/prepare/sampling.h"
 #include "comparisons/prepare/voxel_body.h"
 #include "comparisons/reference/reference_grids.h"
@@ -33,6 +34,7 @@ constexpr double voxel_share = 0.6;                // of the cells of a cut body
 constexpr double quadratic_share = 0.75;           // of the models' cells along an edge, for quadratic elements
 constexpr double seconds_to_measure = 7e-3;        // of processor, a cut cell
 constexpr double most_pilot_cells = 5e5;           // of any lattice of a pilot
+constexpr double most_beyond_refined = 4;          // cells over those of the finest refined lattice that was solved
 
 /// A model solved on a lattice.
 struct LatticeSolve {
@@ -268,7 +270,7 @@ PilotModel pilot_model(const PilotRun& run, std::size_t number, bool measured = 
   if (measured) {
     const double of_cube = static_cast<double>(last.cut->cells.size()) / cells_of(last);  // less on finer lattices
     out.most_cells = most_measured_cells / of_cube;
-    out.measuring = seconds_to_measure * of_cube;
+    out.making = seconds_to_measure * of_cube;
   }
   if (p.cut.value_or(false))
     out.step = step_cost([&] { return build_on(run.prepared, last, p, run.material, true).model; },
@@ -279,6 +281,50 @@ PilotModel pilot_model(const PilotRun& run, std::size_t number, bool measured = 
 } catch (const std::exception& e) {  // no network with this material's moduli, or of this few cells
   PilotModel none;
   none.label = label_of(run, number, measured);
+  none.failure = e.what();
+  return none;
+}
+
+/// Whether a case could ask for cells of several sizes.
+bool can_be_refined(const PilotRun& run) {
+  const Experiment& e = run.prepared.experiment;
+  return run.prepared.models.front().cut.value_or(false) && e.regions.empty() &&
+         e.model_kinematics() == Kinematics::linear;
+}
+
+/// The model of the reference in the cells of its coarsest lattice, refined step by step, far below the reference.
+PilotModel pilot_of_refined(const PilotRun& run) try {
+  const ModelParameters& p = run.prepared.models.front();
+  PilotModel out;
+  out.label = run.prepared.experiment.models.front().label + " accuracy";
+  Lattice lattice = *run.every.back();  // whose nodes the displacements are compared at
+  const Mesh& body = *run.prepared.body.tetrahedra.back();
+  const VoxelGrid& coarse = run.every.front()->cut->grid;
+  double promised = refine_until(run.prepared, coarse, body, 1).promised, cells = 0;
+  const auto most = static_cast<double>(run.reference.front()->cut->cells.size());
+  while (out.cells.size() < 4) {
+    const double start = cpu_seconds();
+    RefinedBody refined = refine_until(run.prepared, coarse, body, 0.8 * promised);
+    promised = refined.promised;
+    cells = static_cast<double>(refined.cut.cells.size());
+    if (!refined.reached || cells > 2 * most) break;
+    out.making = (cpu_seconds() - start) / cells;
+    lattice.cut = std::make_shared<CutBody>(std::move(refined.cut));
+    const LatticeSolve s = solve_on(run.prepared, lattice, p, run.material);
+    if (!s.state.ok) break;
+    out.cells.push_back(cells);
+    out.errors.push_back(run.error(run.every.size() - 1, s.field));
+    out.promised.push_back(promised);
+  }
+  if (out.cells.empty()) return out;
+  extrapolate_errors(out);
+  out.most_cells = most_beyond_refined * out.cells.back();
+  out.step = step_cost([&] { return build_on(run.prepared, lattice, p, run.material, true).model; },
+                       run.material.density, cells, std::cbrt(run.prepared.lattices.front().region->volume / cells));
+  return out;
+} catch (const std::exception& e) {  // nothing holds the body, or it has too few cells
+  PilotModel none;
+  none.label = run.prepared.experiment.models.front().label + " accuracy";
   none.failure = e.what();
   return none;
 }
@@ -386,6 +432,7 @@ Pilot solve_pilot(const Experiment& experiment, const IsotropicMaterial& materia
     out.models.push_back(pilot_model(run, m));
     if (can_be_measured(e, prepared.models[m])) out.models.push_back(pilot_model(run, m, true));
   }
+  if (can_be_refined(run)) out.models.push_back(pilot_of_refined(run));
   out.elements = pilot_elements(run);
   return out;
 }

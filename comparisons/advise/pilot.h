@@ -37,7 +37,8 @@ struct PilotModel {
   std::vector<double> cells;     ///< of the lattices, ascending
   std::vector<double> errors;    ///< on them, against the pilot's reference
   double most_cells = HUGE_VAL;  ///< that it has on a lattice
-  double measuring = 0;          ///< of a model whose cells are measured: CPU time per cell [s]
+  double making = 0;             ///< of cells that are measured, or refined: CPU time per cell [s]
+  std::vector<double> promised;  ///< of refined cells: the error on each lattice by which a case asks for it
   /// On finer lattices what the model is off from its limit falls with the edge to the power `order`.  The limit is the
   /// reference, and what falls is the excess of stiffness e / (1 - e); or, for springs of another Poisson's ratio, one
   /// of their own, a at t = 0.

@@ -368,8 +368,15 @@ double viscous_time_step(const MassSpringModel& model, double density, const Vis
 double relaxing_time_step(const MassSpringModel& model, double density, const RelaxingCells& relaxing, double elastic,
                           double theta) {
   if (!relaxing.acts()) return elastic;
+  const double shares = relaxing.relaxation.instantaneous() - 1;
+  if (relaxing.of_measured()) {
+    MassSpringModel sudden = model;
+    std::vector<double>& form = law_of<MeasuredCells>(sudden)->form;
+    for (std::size_t i = 0; i < form.size(); ++i) form[i] += shares * relaxing.measured.form[i];
+    return safe_time_step(sudden, density, false, theta);
+  }
   AveragedSprings branches = relaxing.cells;
-  branches.shear_modulus *= relaxing.relaxation.instantaneous() - 1;
+  branches.shear_modulus *= shares;
   branches.lame_lambda = -2 * branches.shear_modulus / 3;  // no bulk modulus
   if (!averaged_springs_of(model)) {
     const double of_branches = safe_time_step({model.network, {branches}}, density, false, theta);

@@ -307,6 +307,11 @@ void read_relaxation(const JsonPlace& document, SpringsFile& file) {
   if (share.empty()) place->at("share").refuse("is empty", "one branch at least");
   const std::vector<double> time = place->at("time_s").numbers(1, share.size(), "shares", smallest_of_file);
   for (std::size_t i = 0; i < share.size(); ++i) file.relaxing.relaxation.branches.push_back({share[i], time[i]});
+  if (law_of<MeasuredCells>(file.model)) {
+    place->require_known(known);
+    file.relaxing = RelaxingCells::of(file.model, {}, file.relaxing.relaxation);
+    return;
+  }
   for (auto& [key, constant] : branch_constants(file.relaxing.cells)) {
     constant = place->at(key).number(std::string_view(key) == "coupling" ? -largest_number_of_file : 0,
                                      largest_number_of_file);

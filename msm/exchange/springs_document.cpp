@@ -286,7 +286,7 @@ void add_surface(const EmbeddedSurface& surface, DocumentWriter& out) {
   out.numbers({"surface", "weights"}, std::move(weights));
 }
 
-/// Branches, and the constants of the cells that these have the shares of.
+/// Branches, and the constants of the cells that these have the shares of; of measured cells those are the law's.
 void add_relaxation(const RelaxingCells& relaxing, DocumentWriter& out) {
   if (!relaxing.acts()) return;
   std::vector<double> share, time;
@@ -296,6 +296,7 @@ void add_relaxation(const RelaxingCells& relaxing, DocumentWriter& out) {
   }
   out.numbers({"relaxation", "share"}, std::move(share));
   out.numbers({"relaxation", "time_s"}, std::move(time), smallest_of_file);
+  if (relaxing.of_measured()) return;
   for (const auto& [key, value] : branch_constants(relaxing.cells)) {
     require_readable({"relaxation", key}, {value});
     out.at({"relaxation", key}) = value;

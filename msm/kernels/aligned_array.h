@@ -20,6 +20,9 @@ class AlignedArray {
     std::fill_n(values_.get(), size, value);
   }
   Real* data() const { return values_.get(); }
+  std::size_t size() const { return size_; }
+  Real* begin() const { return data(); }
+  Real* end() const { return data() + size_; }
   std::size_t bytes() const { return size_ * sizeof(Real); }
 
  private:

@@ -56,7 +56,7 @@ void CellForces<Real>::store_cells(const Network& network) {
   const long cells = kernels_->cell_list.cells, count = static_cast<long>(order_.cells.size());
   list_.blocks = order_.plan.blocks;
   corners_.resize(8 * cells * list_.blocks);
-  numbers_.resize(cell_number::count * cells * list_.blocks);
+  numbers_ = {static_cast<std::size_t>(cell_number::count * cells * list_.blocks), Real(0)};
   int cell = 0;  // the one before, with nothing in it, in the rest of a block
   for (long at = 0; at < cells * list_.blocks; ++at) {
     const bool is_cell = at < count && order_.cells[at] >= 0;
@@ -68,7 +68,8 @@ void CellForces<Real>::store_cells(const Network& network) {
       corners_[8 * cells * (at / cells) + n * cells + at % cells] =
           order_.place[network.cells.corners[cell][corner_at(n)]];
     const auto set = [&](int number, double value) {
-      numbers_[cell_number::count * cells * (at / cells) + number * cells + at % cells] = static_cast<Real>(value);
+      numbers_.data()[cell_number::count * cells * (at / cells) + number * cells + at % cells] =
+          static_cast<Real>(value);
     };
     set(cell_number::area, is_cell ? part.fraction * l * l : 0);
     set(cell_number::per_edge, 1 / l);
@@ -85,10 +86,10 @@ template <class Real>
 void CellForces<Real>::store_forms(const MeasuredCells& law) {
   static_assert(cell_number::of_form == numbers_of_form);
   const std::size_t cells = kernels_->cell_list.cells;
-  forms_.assign(numbers_of_form * cells * order_.plan.blocks, Real(0));
+  forms_ = {numbers_of_form * cells * order_.plan.blocks, Real(0)};
   for (std::size_t at = 0; at < order_.cells.size(); ++at)
     for (int number = 0; number < numbers_of_form; ++number)
-      forms_[numbers_of_form * cells * (at / cells) + number * cells + at % cells] =
+      forms_.data()[numbers_of_form * cells * (at / cells) + number * cells + at % cells] =
           static_cast<Real>(law.form[numbers_of_form * order_.cells[at] + number]);
 }
 
@@ -150,7 +151,7 @@ CellList<Real> CellForces<Real>::part_of_list(long begin, long end) {
   list.blocks = end - begin;
   list.corners = corners_.data() + 8 * kernels_->cell_list.cells * begin;
   list.numbers = numbers_.data() + cell_number::count * kernels_->cell_list.cells * begin;
-  if (!forms_.empty()) list.forms = forms_.data() + numbers_of_form * kernels_->cell_list.cells * begin;
+  if (forms_.size() > 0) list.forms = forms_.data() + numbers_of_form * kernels_->cell_list.cells * begin;
   if (relaxing()) {
     list.branch_count = static_cast<int>(branches_.size());
     list.branches = branches_.data();
@@ -247,13 +248,13 @@ void CellForces<Real>::set_branches(const Relaxation& relaxation, const Averaged
     const Real gain = static_cast<Real>(share * step.phi), decay = static_cast<Real>(step.decay);
     branches_.push_back({static_cast<Real>(share), decay, gain, gain * (1 - decay)});  // a held strain relaxes to 0
   }
-  if (forms_.empty() && relaxing()) {
+  if (forms_.size() == 0 && relaxing()) {
     const LatticeAveraged<Real>& own = constants_[0].springs;
     const double b = own.bending, k = own.coupling, of_b = list_.relaxing.bending, of_k = list_.relaxing.coupling;
     list_.bending_of_branches.own = static_cast<Real>((b * of_b - k * of_k) / (b * b - k * k));
     list_.bending_of_branches.other = static_cast<Real>((b * of_k - k * of_b) / (b * b - k * k));
   }
-  overstrains_.assign(overstrain_count * kernels_->cell_list.cells * branches_.size() * order_.plan.blocks, Real(0));
+  overstrains_ = {overstrain_count * kernels_->cell_list.cells * branches_.size() * order_.plan.blocks, Real(0)};
 }
 
 template <class Real>
@@ -267,13 +268,13 @@ void CellForces<Real>::relax(const Padded<Real>* x) {
   const std::size_t of_branch = overstrain_count * kernels_->cell_list.lanes;
   for (std::size_t i = 0; i < overstrains_.size(); ++i) {  // gain E = loss P
     const CellBranch<Real>& branch = branches_[i / of_branch % branches_.size()];
-    overstrains_[i] *= branch.gain / branch.loss;
+    overstrains_.data()[i] *= branch.gain / branch.loss;
   }
 }
 
 template <class Real>
 void CellForces<Real>::add_relaxing(const Padded<Real>* x, Padded<Real>* f) {
-  const std::vector<Real> kept = overstrains_;
+  const std::vector<Real> kept(overstrains_.begin(), overstrains_.end());
   const std::vector<CellBranch<Real>> branches = branches_;
   const std::vector<Padded<Real>> still(order_.place.size(), Padded<Real>{});
   std::vector<Padded<Real>> with = still, without = still;
@@ -281,7 +282,7 @@ void CellForces<Real>::add_relaxing(const Padded<Real>* x, Padded<Real>* f) {
   for (CellBranch<Real>& branch : branches_) branch.gain = branch.loss = 0;
   add(x, still.data(), without.data(), false);
   branches_ = branches;
-  overstrains_ = kept;
+  std::copy(kept.begin(), kept.end(), overstrains_.begin());
   for (std::size_t p = 0; p < with.size(); ++p)
     for (int d = 0; d < 3; ++d) f[p].v[d] += with[p].v[d] - without[p].v[d];
 }

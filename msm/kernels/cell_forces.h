@@ -1,6 +1,7 @@
 // Forces of averaged springs, or measured cells, in cells that the body may fill in part, by the kernels for lists.
 #pragma once
 
+#include "msm/kernels/aligned_array.h"
 #include "msm/kernels/cell_order.h"
 #include "msm/kernels/kernels.h"
 #include "msm/laws/laws.h"
@@ -74,11 +75,11 @@ class CellForces : public BlockForces<Real> {
   bool viscous_;
   CellOrder order_;
   std::vector<int> corners_;
-  std::vector<Real> numbers_, forms_;
+  AlignedArray<Real> numbers_, forms_;
   CellList<Real> list_;
   std::vector<Constants> constants_;  ///< of each material
   std::vector<CellBranch<Real>> branches_;
-  std::vector<Real> overstrains_;
+  AlignedArray<Real> overstrains_;
   std::vector<Held> anchors_;
   std::vector<Tie> ties_;
   std::vector<CarriedPoint> carried_;  ///< places

@@ -116,7 +116,7 @@ struct CellBranch {
   Real share, decay, gain, loss;
 };
 /// Strains that branches follow: twice the deviatoric strain, whose third entry is minus the first two, and the
-/// hourglass components over the edge [1].
+/// hourglass components over the edge [1]; of measured cells their deformations [m] likewise.
 constexpr int overstrain_count = 17;
 
 /// Cells in blocks of as many as a kernel computes together; an unused place of the last block repeats a cell without
@@ -130,7 +130,7 @@ struct CellList {
   LatticeAveraged<Real> springs = {};   ///< moduli, hourglass stiffness times G / 8 [Pa]; of measured cells no curve
   LatticeAveraged<Real> dashpots = {};  ///< the same times the time of retardation [s]; without a curve
   Real retardation = 0;                 ///< this time, for the forms
-  LatticeAveraged<Real> relaxing = {};  ///< long-time moduli of the branches; without a curve
+  LatticeAveraged<Real> relaxing = {};  ///< long-time moduli of the branches; without a curve; not of measured cells
   /// Of branches beside averaged springs, whose long-time moduli but for bending are theirs: bending modes of
   /// overstrains V resist as `own` V + `other` (V of the other mode of the plane) of the springs would.
   struct {

@@ -10,7 +10,7 @@ namespace {
 using CellMatrix24 = Eigen::Matrix<double, 24, 24>;
 using Corners = Eigen::Matrix<double, 3, 8>;
 using InPatterns = Eigen::Matrix<double, 3, 4>;  // a vector per pattern
-using Numbers = Eigen::Matrix<double, deformations_of_cell, 1>;
+using Numbers = Deformations;
 using Voigt = Eigen::Matrix<double, 6, 1>;
 
 /// xx, yy, zz, 2 yz, 2 zx, 2 xy of a symmetric matrix.
@@ -42,39 +42,77 @@ double divided(double a, double b, double c) {
   return (-1.0 / 4 - second / 8 + third / 10 - fourth / 12) / (m * m);
 }
 
-/// State of a cell.
-struct Stretched {
-  Eigen::Matrix<double, 3, 8> gradient;  ///< of the corners' weights [1/m]
-  double edge;
-  Eigen::Matrix3d F;
-  InPatterns q;            ///< of the positions [m]
-  Vec3 c;                  ///< eigenvalues of F^T F
+/// A strain of C = F^T F, and its slope.
+struct StrainOfC {
+  StrainOfCell measure;
+  Vec3 c;                  ///< eigenvalues of C
   Eigen::Matrix3d V;       ///< its eigenvectors
-  Eigen::Matrix3d slopes;  ///< divided differences of its logarithm
-  Numbers y;
+  Eigen::Matrix3d slopes;  ///< divided differences of the strain
+  Voigt value;
 
-  Stretched(const CellShape& shape, const Corners& x) : edge(shape.edge) {
-    const std::array<Vec3, 8> g = mean_gradients(shape);
-    for (int n = 0; n < 8; ++n) gradient.col(n) = g[n];
-    F = x * gradient.transpose();
-    q = x * corner_patterns();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(F.transpose() * F);
+  StrainOfC(StrainOfCell of, const Eigen::Matrix3d& C) : measure(of) {
+    if (measure == StrainOfCell::green_lagrange) {
+      value = strains_of((C - Eigen::Matrix3d::Identity()) / 2);
+      return;
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(C);
     c = eigen.eigenvalues();
     V = eigen.eigenvectors();
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) slopes(i, j) = divided(c[i], c[j]);
-    const Eigen::Matrix3d log_U = V * (c.array().log() / 2).matrix().asDiagonal() * V.transpose();
-    const InPatterns v = F.transpose() * q;
-    y << edge * strains_of(log_U), Eigen::Map<const Eigen::Matrix<double, 12, 1>>(v.data());
+    value = strains_of(V * (c.array().log() / 2).matrix().asDiagonal() * V.transpose());
+  }
+
+  /// S, of the strain, in axes of the eigenvectors.
+  Eigen::Matrix3d in_axes(const Voigt& s) const { return V.transpose() * stress_of(s) * V; }
+  /// The product of s with the derivative of the strain to C.
+  Eigen::Matrix3d stress_of_C(const Voigt& s) const {
+    if (measure == StrainOfCell::green_lagrange) return stress_of(s) / 2;
+    return V * slopes.cwiseProduct(in_axes(s)) * V.transpose();
+  }
+};
+
+/// F of a cell and the patterns of its positions.
+struct Placed {
+  Corners gradient;  ///< of the corners' weights [1/m]
+  double edge;
+  Eigen::Matrix3d F;
+  InPatterns q;  ///< of the positions [m]
+
+  Placed(const CellShape& shape, const Corners& x) : edge(shape.edge) {
+    const std::array<Vec3, 8> g = mean_gradients(shape);
+    for (int n = 0; n < 8; ++n) gradient.col(n) = g[n];
+    F = x * gradient.transpose();
+    q = x * corner_patterns();
   }
 
   bool inverted() const { return !(F.determinant() > 0); }
+  Eigen::Matrix3d C() const { return F.transpose() * F; }
+  Numbers deformations(const Voigt& strain) const {
+    Numbers y;
+    const InPatterns v = F.transpose() * q;
+    y << edge * strain, Eigen::Map<const Eigen::Matrix<double, 12, 1>>(v.data());
+    return y;
+  }
+  static InPatterns in_patterns(const Numbers& of) { return Eigen::Map<const InPatterns>(of.data() + 6); }
+
+  /// Of the corners, dE/dx: `stress` = dE/dC, and w = dE/dv of the patterns.
+  Corners force(const Eigen::Matrix3d& stress, const InPatterns& w) const {
+    return (2 * F * stress + q * w.transpose()) * gradient + F * w * corner_patterns().transpose();
+  }
+};
+
+/// State of a cell.
+struct Stretched : Placed, StrainOfC {
+  Numbers y;
+
+  Stretched(const CellShape& shape, const Corners& x, StrainOfCell strain = StrainOfCell::logarithmic)
+      : Placed(shape, x), StrainOfC(strain, C()), y(deformations(value)) {}
 
   /// S, of the log strain, in axes of the eigenvectors, from M y.
-  Eigen::Matrix3d stress(const Numbers& of) const { return V.transpose() * stress_of(edge * of.head<6>()) * V; }
+  Eigen::Matrix3d stress(const Numbers& of) const { return in_axes(edge * of.head<6>()); }
   /// Its product with the derivative of the log strain to C = F^T F.
-  Eigen::Matrix3d stress_of_C(const Numbers& of) const { return V * slopes.cwiseProduct(stress(of)) * V.transpose(); }
-  static InPatterns in_patterns(const Numbers& of) { return Eigen::Map<const InPatterns>(of.data() + 6); }
+  Eigen::Matrix3d stress_of_C(const Numbers& of) const { return StrainOfC::stress_of_C(edge * of.head<6>()); }
 
   /// Derivative of C to F(i, j), in axes of the eigenvectors.
   Eigen::Matrix3d change_of_C(int i, int j) const {
@@ -83,10 +121,7 @@ struct Stretched {
   }
 
   /// dE/dx of the corners.
-  Corners force(const Numbers& of) const {
-    const InPatterns w = in_patterns(of);
-    return (2 * F * stress_of_C(of) + q * w.transpose()) * gradient + F * w * corner_patterns().transpose();
-  }
+  Corners force(const Numbers& of) const { return Placed::force(stress_of_C(of), in_patterns(of)); }
 
   /// dy/dx, 3 * corner + axis.
   DeformationRows slope() const {
@@ -137,6 +172,24 @@ Corners corners_at(const Hexahedron& cell, const NodalVectors& x) {
   return p;
 }
 
+void subtract(const Corners& force, const Hexahedron& cell, NodalVectors& f) {
+  for (int n = 0; n < 8; ++n) f.row(cell[n]) -= force.col(n).transpose();
+}
+
+/// dE/dC of stresses s over a step: the mean at the Gauss points of the line from C0 to C1, corrected along it to the
+/// work s . (e1 - e0) where what it lacks is more than round-off.
+Eigen::Matrix3d mean_stress_of_C(const StrainOfC& at0, const StrainOfC& at1, const Eigen::Matrix3d& C0,
+                                 const Eigen::Matrix3d& C1, const Voigt& s) {
+  if (at0.measure == StrainOfCell::green_lagrange) return at0.stress_of_C(s);
+  constexpr double small_change = 1e-5;  // as of EnergyMomentum
+  const Eigen::Matrix3d change = C1 - C0, middle = (C0 + C1) / 2, off = 0.5 / std::sqrt(3.0) * change;
+  const Eigen::Matrix3d mean =
+      (StrainOfC(at0.measure, middle - off).stress_of_C(s) + StrainOfC(at0.measure, middle + off).stress_of_C(s)) / 2;
+  const double size = change.squaredNorm();
+  if (size < small_change) return mean;
+  return mean + (s.dot(at1.value - at0.value) - mean.cwiseProduct(change).sum()) / size * change;
+}
+
 }  // namespace
 
 DeformationRows deformation_of(const CellShape& cell) {
@@ -151,6 +204,30 @@ DeformationRows deformation_of(const CellShape& cell) {
       for (int m = 0; m < 4; ++m) T(6 + 3 * m + i, 3 * n + i) = corner_patterns()(n, m);
     }
   return T;
+}
+
+Deformations deformations(StrainOfCell strain, const CellAt& cell, const NodalVectors& x) {
+  return Stretched(cell.shape, corners_at(cell.corners, x), strain).y;
+}
+
+void add_forces_of(StrainOfCell strain, const Deformations& s, const CellAt& cell, const NodalVectors& x,
+                   NodalVectors& f) {
+  subtract(Stretched(cell.shape, corners_at(cell.corners, x), strain).force(s), cell.corners, f);
+}
+
+void add_mean_forces_of(StrainOfCell strain, const Deformations& s, const CellAt& cell, const NodalVectors& x0,
+                        const NodalVectors& x1, NodalVectors& f) {
+  const Corners p0 = corners_at(cell.corners, x0), p1 = corners_at(cell.corners, x1);
+  const Stretched at0(cell.shape, p0, strain), at1(cell.shape, p1, strain);
+  const Placed middle(cell.shape, (p0 + p1) / 2);
+  const Eigen::Matrix3d stress = mean_stress_of_C(at0, at1, at0.C(), at1.C(), middle.edge * s.head<6>());
+  subtract(middle.force(stress, Placed::in_patterns(s)), cell.corners, f);
+}
+
+DeformationForm without_volume(const DeformationForm& M) {
+  DeformationForm P = DeformationForm::Identity();
+  P.topLeftCorner<3, 3>().array() -= 1.0 / 3;
+  return P * M * P;
 }
 
 DeformationForm form_of(const AveragedSprings& law, const CellShape& cell) {
@@ -221,7 +298,7 @@ void MeasuredCells::add_forces(const Network& network, const NodalVectors& x, No
     const Stretched cell(network.cells.shape(c), corners_at(corners, x));
     Corners force = cell.force(form_of_cell(c) * cell.y);
     if (cell.inverted()) force.setConstant(std::numeric_limits<double>::quiet_NaN());
-    for (int n = 0; n < 8; ++n) f.row(corners[n]) -= force.col(n).transpose();
+    subtract(force, corners, f);
   }
 }
 
@@ -232,8 +309,7 @@ void MeasuredCells::add_viscous_forces(const Network& network, const NodalVector
     const Stretched cell(network.cells.shape(c), corners_at(corners, x));
     const Corners rate = corners_at(corners, v);
     const Numbers y_rate = cell.slope() * Eigen::Map<const Eigen::Matrix<double, 24, 1>>(rate.data());
-    const Corners force = cell.force(time * (form_of_cell(c) * y_rate));
-    for (int n = 0; n < 8; ++n) f.row(corners[n]) -= force.col(n).transpose();
+    subtract(cell.force(time * (form_of_cell(c) * y_rate)), corners, f);
   }
 }
 

@@ -16,6 +16,35 @@ namespace springproof {
 inline constexpr int deformations_of_cell = 18;
 using DeformationRows = Eigen::Matrix<double, deformations_of_cell, 24>;
 using DeformationForm = Eigen::Matrix<double, deformations_of_cell, deformations_of_cell>;
+using Deformations = Eigen::Matrix<double, deformations_of_cell, 1>;
+
+/// Where a cell has which corners.
+struct CellAt {
+  const CellShape& shape;
+  const Hexahedron& corners;
+};
+
+/// Which strain y begins with.
+enum class StrainOfCell {
+  logarithmic,
+  green_lagrange,  ///< (F^T F - 1) / 2, quadratic in the positions
+};
+
+/// y at positions x [m], n x 3.
+Deformations deformations(StrainOfCell strain, const CellAt& cell, const NodalVectors& x);
+
+/// f -= s dy/dx at positions x.
+/// @param s stresses, work per y [N]
+void add_forces_of(StrainOfCell strain, const Deformations& s, const CellAt& cell, const NodalVectors& x,
+                   NodalVectors& f);
+
+/// The same over a step from x0 to x1: forces that do the work s . (y0 - y1), without a torque about the mean positions
+/// (EnergyMomentum).
+void add_mean_forces_of(StrainOfCell strain, const Deformations& s, const CellAt& cell, const NodalVectors& x0,
+                        const NodalVectors& x1, NodalVectors& f);
+
+/// The part of a form that resists changes of shape: P M P, P y without the mean of the first three strains.
+DeformationForm without_volume(const DeformationForm& M);
 
 /// y of small displacements of the corners, 3 * corner + axis.
 DeformationRows deformation_of(const CellShape& cell);
@@ -34,10 +63,10 @@ inline constexpr int numbers_of_form = deformations_of_cell * (deformations_of_c
 /// rigid motion has no energy, and none can be negative while the forms are not.
 struct MeasuredCells {
   /// What solvers, kernels and the time step use of this law.
-  static constexpr LawTraits traits = {
-      "measured cells",
-      Reach::cells,
-      {Capability::cell_kernels, Capability::cells_of_any_shape, Capability::cut_multigrid}};
+  static constexpr LawTraits traits = {"measured cells",
+                                       Reach::cells,
+                                       {Capability::cell_kernels, Capability::cells_of_any_shape,
+                                        Capability::cut_multigrid, Capability::energy_momentum}};
   /// Why it cannot what its traits say; nullptr: it can (law_traits.h).
   const char* lacks(Capability what) const;
 

@@ -146,6 +146,17 @@ struct AddSecantForces {
     }
   }
 
+  /// The energy is quadratic in the deformations, so the stress of their mean does the work.
+  void operator()(const MeasuredCells& law) const {
+    constexpr StrainOfCell strain = StrainOfCell::logarithmic;
+    for (std::size_t c = 0; c < network.cells.size(); ++c) {
+      const CellShape shape = network.cells.shape(c);
+      const CellAt cell{shape, network.cells.corners[c]};
+      const Deformations y = (deformations(strain, cell, x0) + deformations(strain, cell, x1)) / 2;
+      add_mean_forces_of(strain, law.form_of_cell(c) * y, cell, x0, x1, f);
+    }
+  }
+
   /// Quadratic in the positions; of bonds that turn in v, whose mean over the step has the slope of the mean positions.
   void operator()(const Anchors& law) const {
     const NodalVectors middle = (x0 + x1) / 2;

@@ -13,7 +13,8 @@ namespace springproof {
 /// so that a step of m (v1 - v0) = dt f, x1 - x0 = dt (v0 + v1)/2 conserves energy and both momenta at any size.
 ///  - springs, momentum dispersion: z the squared length; tension of the mean length, along the mean spring;
 ///  - volume correction: z = C = F^T F of the mean edges;
-///  - averaged springs: z = (C, v), v the hourglass components in the covariant frame.
+///  - averaged springs: z = (C, v), v the hourglass components in the covariant frame;
+///  - measured cells: the same z, the stress of the mean of their deformations.
 /// s in C is the mean of the stress at the two Gauss points of the straight line from C0 to C1, corrected along it by
 /// what the work lacks where that is more than round-off.
 class EnergyMomentum {

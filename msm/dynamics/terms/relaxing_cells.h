@@ -3,34 +3,33 @@
 
 #include <vector>
 
-#include "msm/laws/cell_forms.h"
 #include "msm/laws/laws.h"
 #include "problem/relaxation.h"
 
 namespace springproof {
 
-/// The branches of a model's cells.  Each has the overstrains Q of two invariants of the cell's mean deformation
-/// gradient F: the deviator of Green-Lagrange's strain, with the stress 2 share G Q (second Piola-Kirchhoff), and the
-/// hourglass components F^T q, by which all branches together stiffen a cell suddenly to one of the sudden moduli; left
-/// elastic these would hold back a quarter of the creep of a bar of two cells across.  No rigid motion is resisted, and
-/// both momenta are kept.
+/// The branches of a model's cells.  Each has the overstrains Q of how a cell changes its shape (Deformations without
+/// the mean strain), by which all branches together stiffen it suddenly to one of the sudden moduli:
+///  - of measured cells by their own forms, of the logarithmic strain;
+///  - of others by averaged springs, of Green-Lagrange's strain: 2 share G Q is a second Piola-Kirchhoff stress.
+/// Hourglass components relax too: left elastic these would hold back a quarter of the creep of a bar of two cells
+/// across.  No rigid motion is resisted, and both momenta are kept.
 struct RelaxingCells {
   Relaxation relaxation = {};
-  AveragedSprings cells = {};  ///< with the long-time moduli, and the hourglass stiffness of branches of sum 1
+  AveragedSprings cells = {};   ///< with the long-time moduli, and the hourglass stiffness of branches of sum 1
+  MeasuredCells measured = {};  ///< of measured cells in their place: forms without_volume()
 
-  /// Those of a model: of its own averaged springs, or of those exact for the material.
+  /// Those of a model: of its own averaged springs or measured cells, or of springs exact for the material.
   /// @param model a model
-  /// @param material of the body, at long times
+  /// @param material of the body, at long times; of measured cells any
   /// @param relaxation without branches: none, for any model
   /// @throws InputError for a model that lacks Capability::relaxation.
   static RelaxingCells of(const MassSpringModel& model, const IsotropicMaterial& material,
                           const Relaxation& relaxation);
 
   bool acts() const { return relaxation.acts(); }
+  bool of_measured() const { return !measured.form.empty(); }
 };
-
-/// What a branch of a cell sees: the deviatoric strain [1], then the hourglass components [m].
-using CellStrains = Eigen::Matrix<double, 3, 7>;
 
 /// The state of the branches: the overstrains at the positions that were last advanced to.
 class Overstrains {
@@ -65,14 +64,19 @@ class Overstrains {
   double dissipated() const { return dissipated_; }  ///< since they were relaxed [J]
 
  private:
-  double twice_energy(std::size_t cell, const CellStrains& a, const CellStrains& b) const;
+  CellShape shape(std::size_t cell) const { return network_.cells.shape(cell); }
+  /// Of a cell at positions x.
+  Deformations strains(std::size_t cell, const NodalVectors& x) const;
+  /// Sum of the branches by their shares.
+  template <class Overstrain>
+  Deformations sum(std::size_t cell, double dt, const Overstrain& of_branch) const;
 
   const Network& network_;
   std::vector<RelaxationBranch> branches_;
-  double shear_modulus_ = 0;  ///< [Pa]
-  CellForms forms_;
-  std::vector<CellStrains> strains_;      ///< of each cell
-  std::vector<CellStrains> of_branches_;  ///< overstrains, of the branches of each cell
+  StrainOfCell measure_ = StrainOfCell::green_lagrange;
+  MeasuredCells forms_;
+  std::vector<Deformations> strains_;      ///< of each cell
+  std::vector<Deformations> of_branches_;  ///< overstrains, of the branches of each cell
   double dissipated_ = 0;
 };
 

@@ -184,10 +184,8 @@ SPRINGPROOF_INLINE void relax(const CellList<Real>& list, Real* P, const Lanes<R
 }
 
 template <class Real>
-SPRINGPROOF_INLINE void relax(const CellList<Real>& list, Real* P, const Lanes<Real> (&D)[3][3],
-                              const Lanes<Real> (&v)[4][3], Lanes<Real> (&Z)[overstrain_count]) {
-  Lanes<Real> z[overstrain_count];
-  strains_of_branches<Real>(D, v, z);
+SPRINGPROOF_INLINE void relax(const CellList<Real>& list, Real* P, const Lanes<Real> (&z)[overstrain_count],
+                              Lanes<Real> (&Z)[overstrain_count]) {
   switch (list.branch_count) {
     case 1:
       return relax<1>(list, P, z, Z);
@@ -214,16 +212,16 @@ SPRINGPROOF_INLINE Lanes<Real> energy_of(const LatticeAveraged<Lanes<Real>>& law
   return Real(0.25) * law.shear * square + Real(0.5) * of_patterns;
 }
 
-/// A step of the branches: their stress over the edge, P = G F Z, and w += forces of the hourglass springs of v and Z,
-/// of measured cells of Z.
-template <LatticeCurve curve, class Real>
+/// A step of the branches: their stress over the edge, P = G F Z, and w += forces of the hourglass springs of v and Z.
+template <class Real>
 SPRINGPROOF_INLINE void add_branches(const CellList<Real>& list, Real* overstrains,
                                      const LatticeAveraged<Lanes<Real>>& springs, const Cells<Real>& c,
                                      const Lanes<Real> (&D)[3][3], const Lanes<Real> (&F)[3][3],
                                      const Lanes<Real> (&v)[4][3], Lanes<Real> (&P)[3][3], Lanes<Real> (&w)[4][3]) {
   using V = Lanes<Real>;
-  V Z[overstrain_count], of_patterns[4][3], stress[5];
-  relax(list, overstrains, D, v, Z);
+  V z[overstrain_count], Z[overstrain_count], of_patterns[4][3], stress[5];
+  strains_of_branches<Real>(D, v, z);
+  relax(list, overstrains, z, Z);
   const V shear = c.area * list.relaxing.shear;
   for (int e = 0; e < 5; ++e) stress[e] = shear * Z[e];
   const V third = -(stress[0] + stress[1]);
@@ -233,10 +231,20 @@ SPRINGPROOF_INLINE void add_branches(const CellList<Real>& list, Real* overstrai
     P[i][2] = F[i][0] * stress[3] + F[i][1] * stress[2] + F[i][2] * third;
   }
   patterns_of(Z, of_patterns);
-  if constexpr (curve == LatticeCurve::none)
-    add_hourglass_forces(times_area(list.relaxing, c.area), c, of_patterns, w);
-  else
-    add_hourglass_forces(list, springs, c, v, of_patterns, w);
+  add_hourglass_forces(list, springs, c, v, of_patterns, w);
+}
+
+/// Of measured cells: y += the branches' Z.
+/// @return the mean of the first three of M Z, which branches have not
+template <class Real>
+SPRINGPROOF_INLINE Lanes<Real> add_branches(const CellList<Real>& list, Real* overstrains, const Real* form,
+                                            Lanes<Real> (&y)[18]) {
+  Lanes<Real> z[overstrain_count], Z[overstrain_count], of_branches[18];
+  shape_of<Real>(y, z);
+  relax(list, overstrains, z, Z);
+  deformations_of_shape<Real>(Z, of_branches);
+  for (int e = 0; e < 18; ++e) y[e] += of_branches[e];
+  return Real(1.0 / 3) * trace_of_form<cells<Real>>(form, of_branches);
 }
 
 /// Forces of a vector of cells, the lanes from `at` of their block; `rates`: velocities of the corners.
@@ -254,16 +262,16 @@ SPRINGPROOF_INLINE void forces_of_cells(const CellList<Real>& list, long block, 
   for (auto& of_pattern : w)
     for (V& entry : of_pattern) entry = 0;
   const LatticeAveraged<V> springs = times_area(list.springs, c.area);
+  constexpr bool measured = curve == LatticeCurve::none;
+  Real* overstrains = list.overstrains + overstrain_count * list.branch_count * (cells<Real> * block + at);
   V of_branches[3][3];  // here, where fewest numbers are kept beside them
-  if constexpr (relaxing)
-    add_branches<curve>(list, list.overstrains + overstrain_count * list.branch_count * (cells<Real> * block + at),
-                        springs, c, D, F, v, of_branches, w);
-  else if constexpr (curve != LatticeCurve::none)
+  if constexpr (relaxing && !measured)
+    add_branches(list, overstrains, springs, c, D, F, v, of_branches, w);
+  else if constexpr (!measured)
     add_hourglass_forces(springs, c, v, w);
   invert(D, F, inverse_transposed, dilatation);
   if constexpr (curve == LatticeCurve::neo_hooke_isochoric)  // the others have the logarithm of J
     stdx::where(dilatation < Real(-1), dilatation) = Real(__builtin_nan(""));
-  constexpr bool measured = curve == LatticeCurve::none;
   V rate[3][3], S_rate[3][4];
   if constexpr (viscous) {
     patterns_of_cells<Real>(rates, at, c, rate, S_rate);
@@ -272,18 +280,21 @@ SPRINGPROOF_INLINE void forces_of_cells(const CellList<Real>& list, long block, 
   if constexpr (measured) {
     const Principal<Real> principal(D, dilatation);
     const V edge = Real(1) / c.per_edge;
-    V y[18], s[18];
+    const Real* form = list.forms + cell_number::of_form * cells<Real> * block + at;
+    V y[18], s[18], volume_of_branches = 0;
     deformations<Real>(principal, edge, v, y);
+    if constexpr (relaxing) volume_of_branches = add_branches<Real>(list, overstrains, form, y);
     if constexpr (viscous) {
       turned_back_rates<Real>(F, S, rate, S_rate, v);
       add_rates<Real>(principal, list.retardation * edge, F, rate, v, y);
     }
-    times_form<cells<Real>>(list.forms + cell_number::of_form * cells<Real> * block + at, y, s);
+    times_form<cells<Real>>(form, y, s);
+    for (int e = 0; relaxing && e < 3; ++e) s[e] -= volume_of_branches;
     measured_stress<Real>(principal, F, s, P, w);
   } else {
     first_stress<curve>(springs, D, inverse_transposed, dilatation, P);
   }
-  if constexpr (relaxing)
+  if constexpr (relaxing && !measured)
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) P[i][j] += of_branches[i][j];
   if constexpr (viscous && !measured) {
@@ -359,38 +370,65 @@ void relaxing_forces(const CellList<Real>& list, const Padded<Real>* u, const Pa
   s ? forces_of_curve<true, true>(list, u, s, f) : forces_of_curve<false, true>(list, u, s, f);
 }
 
-/// Adds the energies of the branches of a vector of cells.
+/// The same of measured cells, of the form at `form`.
 template <class Real>
+SPRINGPROOF_INLINE Lanes<Real> energy_of(const Real* form, const Lanes<Real> (&Q)[overstrain_count]) {
+  Lanes<Real> y[18], s[18], sum = 0;
+  deformations_of_shape<Real>(Q, y);
+  times_form<cells<Real>>(form, y, s);
+  for (int e = 0; e < 18; ++e) sum += y[e] * s[e];
+  return Real(0.5) * sum;
+}
+
+/// Adds the energies of the branches of a vector of cells.
+template <bool measured, class Real>
 SPRINGPROOF_INLINE void add_branch_energies(const CellList<Real>& list, long block, int at, const Corners<Real>& u,
                                             double* stored) {
   using V = Lanes<Real>;
   const Cells<Real> c(list.numbers + cell_number::count * cells<Real> * block + at);
-  V D[3][3], S[3][4], F[3][3], v[4][3], z[overstrain_count], Q[overstrain_count];
+  V D[3][3], S[3][4], F[3][3], v[4][3], z[overstrain_count], Q[overstrain_count], energy;
   patterns_of_cells<Real>(u, at, c, D, S);
   if (list.boxes) stretch(list, D, S);
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) F[i][j] = i == j ? D[i][j] + Real(1) : D[i][j];
   turned_back(F, S, v);
-  strains_of_branches<Real>(D, v, z);
+  if constexpr (measured) {
+    V inverse_transposed[3][3], dilatation, y[18];
+    invert(D, F, inverse_transposed, dilatation);
+    deformations<Real>(Principal<Real>(D, dilatation), Real(1) / c.per_edge, v, y);
+    shape_of<Real>(y, z);
+  } else {
+    strains_of_branches<Real>(D, v, z);
+  }
   const Real* P = list.overstrains + overstrain_count * list.branch_count * (cells<Real> * block + at);
   for (int b = 0; b < list.branch_count; ++b) {
     for (int e = 0; e < overstrain_count; ++e, P += lanes<Real>)
       Q[e] = list.branches[b].gain * z[e] - list.branches[b].loss * load(P);
-    const V energy = energy_of(times_area(list.relaxing, c.area), c, Q) / (list.branches[b].share * c.per_edge);
+    if constexpr (measured)
+      energy = energy_of<Real>(list.forms + cell_number::of_form * cells<Real> * block + at, Q);
+    else
+      energy = energy_of(times_area(list.relaxing, c.area), c, Q) / c.per_edge;
     alignas(64) Real of_cells[lanes<Real>];
-    store<Real>(energy, of_cells);
+    store<Real>(energy / list.branches[b].share, of_cells);
     for (const Real of_cell : of_cells) stored[b] += double(of_cell);
+  }
+}
+
+template <bool measured, class Real>
+void energies_of_list(const CellList<Real>& list, const Padded<Real>* u, double* stored) {
+  alignas(64) Corners<Real> at;
+  for (long b = 0; b < list.blocks; ++b) {
+    const int* places = list.corners + 8 * cells<Real> * b;
+    for (int n = 0; n < 8; ++n) gather<3>(u, places + n * cells<Real>, at[n]);
+    for (int lane = 0; lane < cells<Real>; lane += lanes<Real>)
+      add_branch_energies<measured, Real>(list, b, lane, at, stored);
   }
 }
 
 template <class Real>
 void branch_energies(const CellList<Real>& list, const Padded<Real>* u, double* stored) {
-  alignas(64) Corners<Real> at;
-  for (long b = 0; b < list.blocks; ++b) {
-    const int* places = list.corners + 8 * cells<Real> * b;
-    for (int n = 0; n < 8; ++n) gather<3>(u, places + n * cells<Real>, at[n]);
-    for (int lane = 0; lane < cells<Real>; lane += lanes<Real>) add_branch_energies<Real>(list, b, lane, at, stored);
-  }
+  list.springs.curve == LatticeCurve::none ? energies_of_list<true>(list, u, stored)
+                                           : energies_of_list<false>(list, u, stored);
 }
 
 }  // namespace

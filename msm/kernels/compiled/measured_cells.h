@@ -2,6 +2,7 @@
 #pragma once
 
 #include "msm/kernels/compiled/averaged_cells.h"
+#include "msm/kernels/list_kernels.h"
 
 namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE {
 
@@ -58,6 +59,33 @@ SPRINGPROOF_INLINE void times_form(const Real* form, const Lanes<Real> (&y)[18],
     s[i] = sum + load(form) * y[i];
     form += stride;
   }
+}
+
+/// The first three rows of M y together.
+template <int stride, class Real>
+SPRINGPROOF_INLINE Lanes<Real> trace_of_form(const Real* form, const Lanes<Real> (&y)[18]) {
+  Lanes<Real> sum = 0;
+  for (int i = 0; i < 18; ++i)
+    for (int row = 0; row < 3; ++row) {
+      const int low = i < row ? i : row, high = i < row ? row : i;
+      sum += load(form + (high * (high + 1) / 2 + low) * stride) * y[i];
+    }
+  return sum;
+}
+
+/// y without the mean of its first three, which are z[0], z[1] and minus their sum: what branches follow.
+template <class Real>
+SPRINGPROOF_INLINE void shape_of(const Lanes<Real> (&y)[18], Lanes<Real> (&z)[overstrain_count]) {
+  const Lanes<Real> mean = Real(1.0 / 3) * (y[0] + y[1] + y[2]);
+  for (int e = 0; e < 2; ++e) z[e] = y[e] - mean;
+  for (int e = 3; e < 18; ++e) z[e - 1] = y[e];
+}
+/// The y of shapes z.
+template <class Real>
+SPRINGPROOF_INLINE void deformations_of_shape(const Lanes<Real> (&z)[overstrain_count], Lanes<Real> (&y)[18]) {
+  for (int e = 0; e < 2; ++e) y[e] = z[e];
+  y[2] = -(z[0] + z[1]);
+  for (int e = 3; e < 18; ++e) y[e] = z[e - 1];
 }
 
 /// How the cells of a vector are stretched: F^T F = 1 + sum E_k q_k q_k^T.

@@ -29,7 +29,7 @@ models = ["hybmss_avg"]
 )",
                                         "round.toml");
   const Pilot pilot = solve_pilot(e, e.materials.front(), {"hybmss_avg"}, {200, 1500});
-  ASSERT_EQ(pilot.models.size(), 3U);
+  ASSERT_EQ(pilot.models.size(), 4U);
   ASSERT_TRUE(pilot.models[0].step);
   EXPECT_EQ(pilot.models[0].step->failure, "");
   EXPECT_GT(pilot.models[0].step->seconds_per_cell, 1e-9);
@@ -38,6 +38,13 @@ models = ["hybmss_avg"]
   EXPECT_NE(pilot.models[1].failure.find("not worth it"), std::string::npos) << "a bar without notches";
   EXPECT_EQ(pilot.models[2].label, "hybmss_avg cut=false");
   EXPECT_FALSE(pilot.models[2].step) << "whole cubes step as blocks do";
+  const PilotModel& refined = pilot.models[3];
+  EXPECT_EQ(refined.label, "hybmss_avg accuracy");
+  ASSERT_EQ(refined.cells.size(), 2U) << refined.failure;
+  EXPECT_LT(refined.promised[1], refined.promised[0]);
+  EXPECT_LT(refined.errors[1], refined.errors[0]);
+  EXPECT_LT(refined.errors[1], refined.promised[1]);
+  EXPECT_GT(refined.making, 0);
   EXPECT_TRUE(pilot.elements.empty()) << "there are none on a staircase";
 }
 

@@ -13,6 +13,7 @@
 #include "msm/exchange/springs_file.h"
 #include "msm/periodic/laws_of_model.h"
 #include "msm/topology/cubic_lattice.h"
+#include "problem/relaxation.h"
 #include "support/solids.h"
 #include "support/two_materials.h"
 #include "support/zoo.h"
@@ -157,6 +158,27 @@ TEST(MeasuredCells, MoveAThinBodyAsTheFineLatticeDoes) {
   EXPECT_LE(measured.as_averaged, static_cast<int>(of.coarse.cells.size()) / 10);
   EXPECT_GE(measured.error_of_averaged, 0.15);
   EXPECT_LE(measured.error, 0.4 * measured.error_of_averaged);
+}
+
+// Cells of the long-time moduli with branches of half their shear modulus, beside those of the sudden moduli.
+TEST(MeasuredCells, RelaxAsTheFineLatticeDoes) {
+  const Lattices& of = bracket();
+  const auto law = [](const IsotropicMaterial& m) { return averaged_law(test::model("hybmss_avg"), m); };
+  const IsotropicMaterial relaxed{1, 0.45, 1}, sudden = with_shear(relaxed, 1.5);
+  const MeasuredCells cells = measure_cells({of.coarse, of.fine, averaged(0.3)}, {.threads = 2}).cells;
+  const CellSet in = cut_lattice(of.coarse, {}, 1).cells;
+  const MeasuredCells at_long_times = in_material(cells, in, averaged(0.3), law(relaxed)),
+                      at_once = in_material(cells, in, averaged(0.3), law(sudden));
+  MeasuredCells with_branches;
+  for (std::size_t c = 0; c < in.size(); ++c) {
+    const DeformationForm M = at_long_times.form_of_cell(c);
+    with_branches.add_form(M + 0.5 * without_volume(M));
+  }
+  const MeasuredIn truth{of.coarse, of.fine, law(sudden)};
+  const FineTruth fine(truth);
+  const double error = fine.error(with_branches), error_at_once = fine.error(at_once);
+  EXPECT_LE(error, 1.15 * error_at_once);
+  EXPECT_GE(fine.error(at_long_times), 1.2 * error);
 }
 
 // Measured as if free, cells at a clamped end are far too soft.
