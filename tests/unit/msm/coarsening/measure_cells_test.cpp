@@ -166,7 +166,7 @@ TEST(MeasuredCells, RelaxAsTheFineLatticeDoes) {
   const auto law = [](const IsotropicMaterial& m) { return averaged_law(test::model("hybmss_avg"), m); };
   const IsotropicMaterial relaxed{1, 0.45, 1}, sudden = with_shear(relaxed, 1.5);
   const MeasuredCells cells = measure_cells({of.coarse, of.fine, averaged(0.3)}, {.threads = 2}).cells;
-  const CellSet in = cut_lattice(of.coarse, {}, 1).cells;
+  const CellSet in = cut_lattice(of.coarse, {}, {{1, 0.3, 1}}).cells;
   const MeasuredCells at_long_times = in_material(cells, in, averaged(0.3), law(relaxed)),
                       at_once = in_material(cells, in, averaged(0.3), law(sudden));
   MeasuredCells with_branches;
