@@ -269,8 +269,8 @@ struct Part {
 
 /// A part of the body by its material; the first is what is in no region.
 struct RegionRecord {
-  std::string name;    ///< "": in no region
-  std::string colour;  ///< in the section
+  std::string name;                       ///< "": in no region
+  std::string colour;                     ///< in the section
   std::vector<double> youngs_modulus_Pa;  ///< of each material that the case gives it, and its
   std::vector<double> poisson_ratio;
   double density_kg_m3 = 0;
