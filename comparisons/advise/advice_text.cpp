@@ -74,11 +74,11 @@ void weigh(const Advice& a, std::vector<std::string>& words) {
   const Choice *measured = made_by(" coarsened=true"), *refined = made_by(" accuracy");
   if (!measured || !refined) return;
   const auto cost = [](const Choice& c) {
-    return fmt::format("{:.0f} cells, {:.2g} s of processor once", c.resolution.cells, *c.seconds);
+    return fmt::format("{:.0f} cells, {:.2g} s of processor to make and solve", c.resolution.cells, *c.seconds);
   };
   words.push_back(fmt::format(
-      "Measured cells (coarsened: {}) or refined ones (accuracy: {}): {} cost less to make{}.", cost(*measured),
-      cost(*refined), *measured->seconds < *refined->seconds ? "measured ones" : "refined ones",
+      "Measured cells (coarsened: {}) or refined ones (accuracy: {}): {} cost less{}.", cost(*measured), cost(*refined),
+      *measured->seconds < *refined->seconds ? "measured ones" : "refined ones",
       measured->ms_per_step && refined->ms_per_step
           ? fmt::format(", and steps of {:.2g} s take {:.3g} ms beside {:.2g} s and {:.3g} ms", measured->safe_step,
                         *measured->ms_per_step, refined->safe_step, *refined->ms_per_step)

@@ -300,23 +300,30 @@ PilotModel pilot_of_refined(const PilotRun& run) try {
   Lattice lattice = *run.every.back();  // whose nodes the displacements are compared at
   const Mesh& body = *run.prepared.body.tetrahedra.back();
   const VoxelGrid& coarse = run.every.front()->cut->grid;
+  const double of_cube = static_cast<double>(lattice.cut->cells.size()) / cells_of(lattice);
   double promised = refine_until(run.prepared, coarse, body, 1).promised, cells = 0;
   const auto most = static_cast<double>(run.reference.front()->cut->cells.size());
   while (out.cells.size() < 4) {
     const double start = cpu_seconds();
     RefinedBody refined = refine_until(run.prepared, coarse, body, 0.8 * promised);
     promised = refined.promised;
-    cells = static_cast<double>(refined.cut.cells.size());
-    if (!refined.reached || cells > 2 * most) break;
-    out.making = (cpu_seconds() - start) / cells;
-    lattice.cut = std::make_shared<CutBody>(std::move(refined.cut));
-    const LatticeSolve s = solve_on(run.prepared, lattice, p, run.material);
+    const auto cut_cells = static_cast<double>(refined.cut.cells.size());
+    if (!refined.reached || cut_cells > 2 * most) break;
+    Lattice finer = lattice;
+    finer.cut = std::make_shared<CutBody>(std::move(refined.cut));
+    const LatticeSolve s = solve_on(run.prepared, finer, p, run.material);
     if (!s.state.ok) break;
+    lattice = std::move(finer);
+    cells = cut_cells / of_cube;  // as many as of the other models
+    out.making = (cpu_seconds() - start) / cells;
     out.cells.push_back(cells);
     out.errors.push_back(run.error(run.every.size() - 1, s.field));
     out.promised.push_back(promised);
   }
-  if (out.cells.empty()) return out;
+  if (out.cells.empty()) {
+    out.failure = "no refinement within the reference's cells has a smaller error";
+    return out;
+  }
   extrapolate_errors(out);
   out.most_cells = most_beyond_refined * out.cells.back();
   out.step = step_cost([&] { return build_on(run.prepared, lattice, p, run.material, true).model; },

@@ -192,7 +192,8 @@ void mark_lattice(PreparedCase& prepared, Mesh& mesh) {
   const Experiment& e = prepared.experiment;
   if (e.regions.empty() || e.models.empty()) return;
   std::vector<std::string> notes = mark_regions(e.regions, 1, mesh);
-  if (prepared.lattices.empty() && e.reference.elements.empty()) prepared.body.notes = std::move(notes);
+  if (prepared.lattices.empty() && e.reference.elements.empty() && !e.reference.in_time)
+    prepared.body.notes.insert(prepared.body.notes.end(), notes.begin(), notes.end());
 }
 
 void prepare_blocks(PreparedCase& prepared) {

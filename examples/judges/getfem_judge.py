@@ -135,7 +135,6 @@ def main():
         error, order = limit([r[2][face] for r in runs])
         print(f"# force of {face}: uncertain by {error:.3g} N ({100 * error / np.linalg.norm(forces[face]):.3f} %), order {order:.1f}")
     reactions = ", ".join(f"{face} = [{f[0]:.6g}, {f[1]:.6g}, {f[2]:.6g}]" for face, f in forces.items())
-    reactions = ", ".join(f"{face} = [{f[0]:.6g}, {f[1]:.6g}, {f[2]:.6g}]" for face, f in forces.items())
     print(f"reaction_N = {{ {reactions} }}")
     with open(sys.argv[2], "w", encoding="ascii") as out:
         out.write("x,y,z,ux,uy,uz\n")

@@ -124,13 +124,10 @@ MassSpringModel held_fine_cells(const FineCells& fine, const std::vector<std::st
 void stiffen_anchors(const CutBody& body, const std::vector<std::string>& held, const FineCells& fine,
                      const AveragedSprings& law, Network& network) {
   if (law.regions.empty()) return;
-  const double own = materials_of(law).front().youngs_modulus;
+  const auto material_of = [&](int cell) { return materials_of(springs_in_cell(fine, cell, law)).front(); };
   auto anchor = network.anchors.begin();
   for (const std::string& name : held)
-    for (const PatchInCell& part : body.patches.at(name)) {
-      const double there = materials_of(springs_in_cell(fine, part.cell, law)).front().youngs_modulus;
-      for (std::size_t q = 0; q < anchors_of_part; ++q) (anchor++)->stiffness *= there / own;
-    }
+    for (const Anchor& there : anchors_of_patch(body, name, material_of)) (anchor++)->stiffness = there.stiffness;
 }
 
 Eigen::MatrixXd loads_all_over(const Network& network, unsigned series) {

@@ -15,6 +15,7 @@ namespace springproof {
 namespace {
 
 constexpr double least_spread = 1e-6;    // of an edge: below it the quotient of moments is round-off
+constexpr double least = 1e-6;           // of E: what holds the node of an anchor across where it is free
 constexpr double confined_above = 0.45;  // Poisson's ratio from which bonds are stiffer across an interface
 
 /// The part of a patch in a cell as a plate: moments of its area, of the first and second order.
@@ -145,6 +146,11 @@ void require_materials(const CutBody& body, std::size_t materials) {
 std::vector<Anchor> anchors_of_patch(const CutBody& body, const std::string& patch,
                                      const std::vector<IsotropicMaterial>& materials) {
   require_materials(body, materials.size());
+  return anchors_of_patch(body, patch, [&](int cell) { return materials[body.cells[cell].material]; });
+}
+
+std::vector<Anchor> anchors_of_patch(const CutBody& body, const std::string& patch,
+                                     const std::function<IsotropicMaterial(int cell)>& material_of) {
   std::vector<Part> parts;
   for (const PatchInCell& p : body.patches.at(patch)) parts.emplace_back(body, p);
   const std::vector<std::vector<int>> near = parts_nearby(parts);
@@ -153,14 +159,14 @@ std::vector<Anchor> anchors_of_patch(const CutBody& body, const std::string& pat
     const Part& part = parts[p];
     const double edge = body.grid.edge * part.cell.size;
     const Gain gain(parts, static_cast<int>(p), near[p], edge);
-    const IsotropicMaterial& material = materials[part.cell.material];
+    const IsotropicMaterial material = material_of(part.of.cell);
     const double k = anchor_stiffness * part.area / edge;
+    const Eigen::Matrix3d E = material.youngs_modulus * Eigen::Matrix3d::Identity();
     for (std::size_t q = 0; q < bonds_of_part; ++q)
-      anchors.push_back({part.cell.corners, gain.weights(part, q), -1,
-                         k / bonds_of_part * material.youngs_modulus * Eigen::Matrix3d::Identity()});
+      anchors.push_back({part.cell.corners, gain.weights(part, q), -1, k / bonds_of_part * E});
     const Vec3 n = mean_normal(part);
     anchors.push_back({part.cell.corners, part.mean(), -1,
-                       k * (modulus_across(material) - material.youngs_modulus) * n * n.transpose()});
+                       k * ((modulus_across(material) - material.youngs_modulus) * n * n.transpose() + least * E)});
   }
   return anchors;
 }

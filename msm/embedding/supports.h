@@ -1,6 +1,7 @@
 // Springs by which a support holds a patch of a cut body, and by which its materials hold each other.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -30,14 +31,18 @@ void require_materials(const CutBody& body, std::size_t materials);
 ///   w_qa = m_a + sqrt(2) (cos(2 pi q/3) G_1a + sin(2 pi q/3) G_2a),    k_q = 30 E A/(3 l),
 /// q = 0, 1, 2, have the energy 15 E A/l (|m u|^2 + |G_1 u|^2 + |G_2 u|^2), whatever axes are chosen in the plane.  The
 /// last holds the mean across the part by 30 (M - E) A/l n n^T, n the mean normal, M = lambda + 2 G: material at a
-/// support is confined, and near nu = 1/2 the support would give way where the body hardly does.  With M for the
-/// moments too a body that stands on small feet is 2 % stiffer.
+/// support is confined, and near nu = 1/2 the support would give way where the body hardly does.  (1e-6 E more, along
+/// every axis, hold its node where nothing else does.)  With M for the moments too a body that stands on small feet is
+/// 2 % stiffer.
 /// Weights sum to 1, and the mean of the corners by them is a point in the plane of the part.
 /// @param body a body in cells
 /// @param patch name of a patch
-/// @param materials of its cells, by their number
+/// @param material_of of the cell of a number, in the body
 /// @return anchors without a node (-1)
 /// @throws std::out_of_range if the body has no such patch
+std::vector<Anchor> anchors_of_patch(const CutBody& body, const std::string& patch,
+                                     const std::function<IsotropicMaterial(int cell)>& material_of);
+/// The same, `materials` of its cells by their number.
 std::vector<Anchor> anchors_of_patch(const CutBody& body, const std::string& patch,
                                      const std::vector<IsotropicMaterial>& materials);
 

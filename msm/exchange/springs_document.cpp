@@ -325,7 +325,7 @@ void add_check_of_branches(const SpringsFile& springs, const NodalVectors& x, Do
 }
 
 int version_of(const SpringsFile& springs) {
-  if (!springs.anchors.empty()) return springs_version_of_stiff_walls;
+  if (!springs.anchors.empty() || springs.relaxing.of_measured()) return springs_version_of_stiff_walls;
   if (springs.relaxing.acts()) return springs_version_of_branches;
   const CellSet& cells = springs.model.network.cells;
   if (!cells.materials.empty()) return springs_version_of_materials;

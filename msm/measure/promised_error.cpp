@@ -197,7 +197,8 @@ CellEnergies cell_energies(const MassSpringModel& model, const NodalVectors& u) 
 
 std::array<NodalVectors, 2> recovered_stress(const MassSpringModel& model, const NodalVectors& u) {
   const AveragedSprings* law = averaged_springs_of(model);
-  if (!law) throw std::invalid_argument("stresses are recovered in cells of averaged springs");
+  if (!law || !law->regions.empty())
+    throw std::invalid_argument("stresses are recovered in cells of averaged springs of one material");
   const Network& network = model.network;
   const Strains of_cells = cell_strains(network, u), means = nodal_strains(network, of_cells);
   const LinearStrain linear(network, of_cells);

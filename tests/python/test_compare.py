@@ -125,6 +125,12 @@ def test_a_body_by_voxels_is_that_of_compare(tmp_path):
         value = {row["measure"]: row["value"] for row in rows if row["model"] == label}
         assert value["displacement.middle.x"] == pytest.approx(state.at([(0.03, 0.03, 0.03)])[0, 0], rel=1e-6), label
         assert value["force.top.x"] == pytest.approx(state.reactions["top"][0, 0], rel=1e-6), label
+    for nu in (0, 0.499):  # what no load holds of a held patch is free
+        both, foot_only = (sp.Model("hybmss_avg", body, sp.Material(1e4, nu), cut=True, held=held) for held in (["foot", "top"], ["foot"]))
+        pushed = both.solve([loads[0], sp.Displacement("top", (0.001, None, None))]).reactions["top"][0]
+        assert abs(pushed[1:]).max() < 1e-6 * abs(pushed[0])
+        bent = [model.solve([loads[0], sp.Force("top", (0.01, 0, 0))]).at([(0.03, 0.03, 0.03)]) for model in (both, foot_only)]
+        assert bent[0] == pytest.approx(bent[1], rel=1e-6)
     with pytest.raises(sp.InputError, match=r"\d % off these, averaged springs .* %, which is not worth it"):
         sp.Model("hybmss_avg", body, sp.Material(1e4, 0.3), cut=True, held=["foot"], coarsened=True)
     with pytest.raises(sp.InputError, match="coarsened: is for cut cells"):

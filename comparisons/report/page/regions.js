@@ -9,7 +9,7 @@ function sectionPicture(result) {
 const partName = ({name}) => name || 'in no region';
 
 /// Of a region {E, nu} as text, of all materials that it is given.
-const moduliOf = region => ({E: distinct(region.youngs_modulus_Pa.map(E => number(E))).join(', '), nu: distinct(region.poisson_ratio.map(nuText)).join(', ')});
+const moduliOf = region => ({E: distinct([].concat(region.youngs_modulus_Pa).map(E => number(E))).join(', '), nu: distinct([].concat(region.poisson_ratio).map(nuText)).join(', ')});
 
 /// A line for each material.
 function regionsTable(result) {

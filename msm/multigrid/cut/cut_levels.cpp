@@ -1,7 +1,6 @@
 #include "msm/multigrid/cut/cut_levels.h"
 
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -249,7 +248,8 @@ Eigen::Matrix3d AnchoredNodes::inverse_of_free(const Anchor& anchor) const {
   Eigen::Matrix3d free = Eigen::Matrix3d::Zero();
   for (int d = 0; d < 3; ++d) free(d, d) = anchor.acts(d) && !fixed[3 * anchor.node + d];
   if (free.isZero(0)) return free;
-  return Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix3d>(free * anchor.stiffness * free).pseudoInverse();
+  const Eigen::Matrix3d I = Eigen::Matrix3d::Identity();
+  return free * Eigen::Matrix3d(free * anchor.stiffness * free + I - free).inverse() * free;
 }
 
 StiffnessOfCells averaged_cells(const AveragedSprings& law, const CutLevel& level) {

@@ -1,6 +1,8 @@
 // Springs files of cut cells: written and read back with their supports, loads and time step.
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "msm/dynamics/time_step.h"
 #include "msm/embedding/supports.h"
 #include "msm/exchange/anchored_springs.h"
@@ -131,6 +133,30 @@ TEST(CutSprings, AreRefusedWithTheirPlace) {
   } catch (const InputError& e) {
     EXPECT_NE(std::string(e.what()).find("/anchors/z_max/position_m: anchor 0 is"), std::string::npos) << e.what();
   }
+}
+
+TEST(CutSprings, OfEarlierVersionsHaveANumberPerAnchor) {
+  auto text = nlohmann::json::parse(springs_as_json(file_of("hybmss_avg")));
+  auto &stiffness = text["anchors"]["z_max"]["stiffness_N_m"], &version = text["version"];
+  const auto refused = [&](const char* why) {
+    try {
+      parse_springs(text.dump(), "own.json");
+      ADD_FAILURE() << why;
+    } catch (const InputError& e) {
+      EXPECT_NE(std::string(e.what()).find(why), std::string::npos) << e.what();
+    }
+  };
+  stiffness[0][1] = 1e9;
+  refused("/anchors/z_max/stiffness_N_m: anchor 0 pushes apart");
+  version = 6;
+  refused("/anchors/z_max/stiffness_N_m/0");
+  for (auto& anchors : text["anchors"])
+    for (auto& k : anchors["stiffness_N_m"]) k = 7.0;
+  const std::vector<Anchor> read = parse_springs(text.dump(), "own.json").anchors.at("z_max");
+  ASSERT_FALSE(read.empty());
+  for (const Anchor& a : read) EXPECT_TRUE(a.stiffness == 7 * Eigen::Matrix3d::Identity());
+  version = 7;
+  refused("/anchors/z_max/stiffness_N_m");
 }
 
 }  // namespace
