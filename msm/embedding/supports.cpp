@@ -15,7 +15,7 @@ namespace springproof {
 namespace {
 
 constexpr double least_spread = 1e-6;    // of an edge: below it the quotient of moments is round-off
-constexpr double least = 1e-6;           // of E: what holds the node of an anchor across where it is free
+constexpr double least = 1e-3;           // of E: what holds the node of an anchor across where it is free
 constexpr double confined_above = 0.45;  // Poisson's ratio from which bonds are stiffer across an interface
 
 /// The part of a patch in a cell as a plate: moments of its area, of the first and second order.

@@ -31,7 +31,7 @@ void require_materials(const CutBody& body, std::size_t materials);
 ///   w_qa = m_a + sqrt(2) (cos(2 pi q/3) G_1a + sin(2 pi q/3) G_2a),    k_q = 30 E A/(3 l),
 /// q = 0, 1, 2, have the energy 15 E A/l (|m u|^2 + |G_1 u|^2 + |G_2 u|^2), whatever axes are chosen in the plane.  The
 /// last holds the mean across the part by 30 (M - E) A/l n n^T, n the mean normal, M = lambda + 2 G: material at a
-/// support is confined, and near nu = 1/2 the support would give way where the body hardly does.  (1e-6 E more, along
+/// support is confined, and near nu = 1/2 the support would give way where the body hardly does.  (1e-3 E more, along
 /// every axis, hold its node where nothing else does.)  With M for the moments too a body that stands on small feet is
 /// 2 % stiffer.
 /// Weights sum to 1, and the mean of the corners by them is a point in the plane of the part.

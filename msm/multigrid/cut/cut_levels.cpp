@@ -328,9 +328,11 @@ std::vector<CutLevel> cut_levels(const Network& network, const AnchoredNodes& no
     finest.cubes.push_back({finest.point[network.cells.corners[c][0]],
                             static_cast<int>(std::lround(network.cells.edge_of(c) / network.cells.edge))});
   finest.carried = network.cells.carried;
-  for (const Anchor& a : nodes.anchors)
-    finest.anchors.push_back(
-        {a.corners, a.weights, a.node, a.stiffness - a.stiffness * nodes.inverse_of_free(a) * a.stiffness});
+  for (const Anchor& a : nodes.anchors) {
+    const Eigen::Matrix3d inverse = nodes.inverse_of_free(a);
+    if ((inverse.diagonal().array() > 0).all()) continue;  // nothing holds its node
+    finest.anchors.push_back({a.corners, a.weights, a.node, a.stiffness - a.stiffness * inverse * a.stiffness});
+  }
   std::vector<CutLevel> levels = {std::move(finest)};
   while (levels.back().point.size() > smallest_cut_level && levels.back().cubes.size() > 8) {
     CutLevel coarse = coarsen(levels.back());
