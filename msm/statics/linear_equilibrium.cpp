@@ -64,16 +64,27 @@ void solve_primal(const LinearProblem& p, bool direct, Equilibrium& result) {
   finish(p, u, Ku, result);
 }
 
+/// The prescribed displacements, and at corners those of a node that they are anchored to: so residuals are relative to
+/// forces of cells, not to those of anchors, which near nu = 1/2 are much larger.
+Eigen::VectorXd start_of(const LinearProblem& p) {
+  Eigen::VectorXd u = p.prescribed;
+  for (const Anchor& a : p.model.network.anchors)
+    for (const int n : a.corners)
+      for (int d = 0; d < 3; ++d)
+        if (p.fixed[3 * a.node + d] && !p.fixed[3 * n + d]) u[3 * n + d] = p.prescribed[3 * a.node + d];
+  return u;
+}
+
 void solve_mixed(const LinearProblem& p, Equilibrium& result) {
   const auto system = saddle_point_at_rest(p.model, p.fixed);
   const double unit = affine_shear_modulus(p.model) * p.model.network.cells.edge;
-  // u = prescribed + du: move the prescribed part to the right-hand side of both equations.
-  const MixedVector prescribed{p.prescribed, Eigen::VectorXd::Zero(system->compliance().size())},
-      b{p.external / unit - system->force(prescribed), -system->volume_change(p.prescribed)};
+  // u = start + du: move the known part to the right-hand side of both equations.
+  const MixedVector start{start_of(p), Eigen::VectorXd::Zero(system->compliance().size())},
+      b{p.external / unit - system->force(start), -system->volume_change(start.u)};
   MixedVector x;
   report(solve_saddle_point(*system, p.fixed, b, p.options.tolerance, p.options.max_iterations, x),
          "GMRES + mixed multigrid", result);
-  x.u += p.prescribed;
+  x.u += start.u;
   finish(p, x.u, unit * system->force(x), result);
 }
 
