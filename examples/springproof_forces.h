@@ -354,6 +354,18 @@ struct sp_branches {
   const double* form; /* of measured cells in their place; else null */
 };
 
+/* A step of branch b to the strains E, of so many numbers, from those of `state`: its Q there, sum += share Q. */
+static const double* sp_advance_branch(struct sp_branches all, size_t b, int strains, const double* E, double dt,
+                                       double* state, double* sum) {
+  double* Q = state + SP_STRAINS * (1 + b);
+  const double ratio = dt / all.time[b], phi = ratio > 0 ? -expm1(-ratio) / ratio : 1;
+  for (int i = 0; i < strains; ++i) {
+    Q[i] = exp(-ratio) * Q[i] + phi * (E[i] - state[i]);
+    sum[i] += all.share[b] * Q[i];
+  }
+  return Q;
+}
+
 /* v without the mean of its first three. */
 static void sp_without_volume(double v[18]) {
   const double mean = (v[0] + v[1] + v[2]) / 3;
@@ -367,15 +379,8 @@ static double sp_relaxing_measured(struct sp_branches all, const double* form, d
   struct sp_stretched at = sp_stretched_of(&a, edge);
   double sum[18] = {0}, s[18], energy = 0;
   sp_without_volume(at.y);
-  for (size_t b = 0; b < all.count; ++b) {
-    double* Q = state + SP_STRAINS * (1 + b);
-    const double ratio = dt / all.time[b], phi = ratio > 0 ? -expm1(-ratio) / ratio : 1;
-    for (int i = 0; i < 18; ++i) {
-      Q[i] = exp(-ratio) * Q[i] + phi * (at.y[i] - state[i]);
-      sum[i] += all.share[b] * Q[i];
-    }
-    energy += all.share[b] * sp_form(form, Q, s);
-  }
+  for (size_t b = 0; b < all.count; ++b)
+    energy += all.share[b] * sp_form(form, sp_advance_branch(all, b, 18, at.y, dt, state, sum), s);
   for (int i = 0; i < 18; ++i) state[i] = at.y[i];
   sp_form(form, sum, s);
   sp_without_volume(s);
@@ -398,13 +403,9 @@ static double sp_relaxing_cell(struct sp_branches all, double edge, struct sp_pa
   }
   for (int m = 0; m < 12; ++m) E[9 + m] = a.v[m / 3][m % 3];
   for (size_t b = 0; b < all.count; ++b) {
-    double *Q = state + SP_STRAINS * (1 + b), w[4][3], of_v[4][3], twice = 0;
-    const double ratio = dt / all.time[b], phi = ratio > 0 ? -expm1(-ratio) / ratio : 1;
-    for (int i = 0; i < SP_STRAINS; ++i) {
-      Q[i] = exp(-ratio) * Q[i] + phi * (E[i] - state[i]);
-      sum[i] += all.share[b] * Q[i];
-      if (i < 9) twice += 2 * all.cells.shear_modulus * V * Q[i] * Q[i];
-    }
+    const double* Q = sp_advance_branch(all, b, SP_STRAINS, E, dt, state, sum);
+    double w[4][3], of_v[4][3], twice = 0;
+    for (int i = 0; i < 9; ++i) twice += 2 * all.cells.shear_modulus * V * Q[i] * Q[i];
     for (int m = 0; m < 12; ++m) of_v[m / 3][m % 3] = Q[9 + m];
     sp_hourglass_springs(all.cells, edge, part, of_v, w);
     for (int m = 0; m < 12; ++m) twice += Q[9 + m] * w[m / 3][m % 3];

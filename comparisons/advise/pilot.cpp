@@ -301,7 +301,7 @@ PilotModel pilot_of_refined(const PilotRun& run) try {
   const Mesh& body = *run.prepared.body.tetrahedra.back();
   const VoxelGrid& coarse = run.every.front()->cut->grid;
   const double of_cube = static_cast<double>(lattice.cut->cells.size()) / cells_of(lattice);
-  double promised = refine_until(run.prepared, coarse, body, 1).promised, cells = 0;
+  double promised = refine_until(run.prepared, coarse, body, 1).promised;
   const auto most = static_cast<double>(run.reference.front()->cut->cells.size());
   while (out.cells.size() < 4) {
     const double start = cpu_seconds();
@@ -314,9 +314,8 @@ PilotModel pilot_of_refined(const PilotRun& run) try {
     const LatticeSolve s = solve_on(run.prepared, finer, p, run.material);
     if (!s.state.ok) break;
     lattice = std::move(finer);
-    cells = cut_cells / of_cube;  // as many as of the other models
-    out.making = (cpu_seconds() - start) / cells;
-    out.cells.push_back(cells);
+    out.cells.push_back(cut_cells / of_cube);  // as many as of the other models
+    out.making = (cpu_seconds() - start) / out.cells.back();
     out.errors.push_back(run.error(run.every.size() - 1, s.field));
     out.promised.push_back(promised);
   }
@@ -325,7 +324,8 @@ PilotModel pilot_of_refined(const PilotRun& run) try {
     return out;
   }
   extrapolate_errors(out);
-  out.most_cells = most_beyond_refined * out.cells.back();
+  const double cells = out.cells.back();
+  out.most_cells = most_beyond_refined * cells;
   out.step = step_cost([&] { return build_on(run.prepared, lattice, p, run.material, true).model; },
                        run.material.density, cells, std::cbrt(run.prepared.lattices.front().region->volume / cells));
   return out;

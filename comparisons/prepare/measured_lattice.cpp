@@ -122,7 +122,7 @@ void MeasuredLattice::apply(const ModelParameters& parameters, const IsotropicMa
   erase_laws<AveragedSprings>(model);
   model.laws.emplace_back(in_material(measured_cells, model.network.cells, of, at, of_materials));
   if (!of_materials) return;
-  stiffen_anchors(*coarse_, held, *of_materials, at, model.network);
+  set_anchors(*coarse_, held, *of_materials, at, model.network);
   built.embedding.volumes.head(coarse_->points.rows()) = weighed_volumes(material);
 }
 

@@ -125,7 +125,10 @@ void CellPatches::add_supports(const std::vector<std::string>& held) {
     const std::vector<Anchor> anchors = anchors_of_patch(fine_.body, name, materials_of(law_));
     for (std::size_t a = 0; a < anchors.size(); ++a) {
       const int cell = parts[a / anchors_of_part].cell;
-      anchors_[cell].push_back(anchors[a]);
+      CellStiffnessMatrix& K = anchors_.try_emplace(cell, CellStiffnessMatrix::Zero()).first->second;
+      const std::array<double, 8>& w = anchors[a].weights;
+      for (int m = 0; m < 8; ++m)
+        for (int n = 0; n < 8; ++n) K.block<3, 3>(3 * m, 3 * n) += w[m] * w[n] * anchors[a].stiffness;
       for (const int n : fine_.body.cells[cell].corners) at_support_[n] = 1;
     }
   }
@@ -166,8 +169,7 @@ void CellPatches::each_coupling(const Patch& patch, const FineNodes& nodes, cons
     for (int m = 0; m < 8; ++m)
       for (int n = 0; n < 8; ++n) {
         Eigen::Matrix3d block = k.block<3, 3>(3 * m, 3 * n);
-        if (anchors != anchors_.end())
-          for (const Anchor& a : anchors->second) block += a.weights[m] * a.weights[n] * a.stiffness;
+        if (anchors != anchors_.end()) block += anchors->second.block<3, 3>(3 * m, 3 * n);
         act(nodes.corners[f][m], nodes.corners[f][n], block);
       }
     for (const int b : bonds_of_[patch.fine[f]]) each_of_bond(bonds_[b], nodes, act);

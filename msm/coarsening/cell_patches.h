@@ -68,10 +68,10 @@ class CellPatches {
   std::vector<InterfaceBond> bonds_;                      ///< of the fine cells
   std::vector<std::vector<int>> bonds_of_;                ///< of a fine cell, those that it is the first cell of
   std::vector<char> reaches_;  ///< whether a bond of a fine cell leads to another cube, as those of slivers do
-  std::map<int, std::vector<Anchor>> anchors_;  ///< of fine cells
-  std::vector<char> at_support_;                ///< fine nodes of these cells
-  std::vector<std::vector<int>> at_;            ///< coarse cells at each coarse node
-  std::vector<int> cells_at_;                   ///< how many fine cells have each fine node
+  std::map<int, Eigen::Matrix<double, 24, 24>> anchors_;  ///< of fine cells
+  std::vector<char> at_support_;                          ///< fine nodes of these cells
+  std::vector<std::vector<int>> at_;                      ///< coarse cells at each coarse node
+  std::vector<int> cells_at_;                             ///< how many fine cells have each fine node
 };
 
 }  // namespace springproof

@@ -104,7 +104,7 @@ ForceLaw averaged_cells(const MeasuredIn& in) {
 
 MassSpringModel held_cells(const MeasuredIn& in, const std::vector<std::string>& held, const ForceLaw& of_cells) {
   MassSpringModel model{cut_lattice(in.coarse, held, {materials_of(in.law).front()}), {of_cells, Anchors{}}};
-  stiffen_anchors(in.coarse, held, in.fine, in.law, model.network);
+  set_anchors(in.coarse, held, in.fine, in.law, model.network);
   return model;
 }
 

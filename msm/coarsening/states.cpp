@@ -121,8 +121,8 @@ MassSpringModel held_fine_cells(const FineCells& fine, const std::vector<std::st
   return {cut_lattice(fine.body, held, materials_of(law)), {law, Anchors{}}};
 }
 
-void stiffen_anchors(const CutBody& body, const std::vector<std::string>& held, const FineCells& fine,
-                     const AveragedSprings& law, Network& network) {
+void set_anchors(const CutBody& body, const std::vector<std::string>& held, const FineCells& fine,
+                 const AveragedSprings& law, Network& network) {
   if (law.regions.empty()) return;
   const auto material_of = [&](int cell) { return materials_of(springs_in_cell(fine, cell, law)).front(); };
   auto anchor = network.anchors.begin();

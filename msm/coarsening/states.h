@@ -22,14 +22,14 @@ std::vector<IsotropicMaterial> materials_of(const AveragedSprings& law);
 MassSpringModel held_fine_cells(const FineCells& fine, const std::vector<std::string>& held,
                                 const AveragedSprings& law);
 
-/// Anchors of coarse cells in proportion to Young's modulus there.
+/// Gives the anchors of coarse cells the stiffness of the materials there; of a body of one they have it.
 /// @param body the coarse cells
 /// @param held names of the patches, in the order of the anchors
 /// @param fine cells of the body
-/// @param law of its materials; anchors are those of the first
+/// @param law of its materials
 /// @param network whose anchors are changed
-void stiffen_anchors(const CutBody& body, const std::vector<std::string>& held, const FineCells& fine,
-                     const AveragedSprings& law, Network& network);
+void set_anchors(const CutBody& body, const std::vector<std::string>& held, const FineCells& fine,
+                 const AveragedSprings& law, Network& network);
 
 /// Loads all over a body: Gaussian body forces, of one to three cells' width, and forces and torques at marks, the tips
 /// of its limbs among them, taken by another mark.  On a free body with the acceleration that they cause.

@@ -244,10 +244,15 @@ AnchoredNodes::AnchoredNodes(const Network& network, std::vector<char> fixed_unk
       fixed(std::move(fixed_unknowns)),
       corners(network.nodes() - static_cast<int>(network.anchors.size())) {}
 
+bool AnchoredNodes::holds(const Anchor& anchor) const {
+  bool all = true;
+  for (int d = 0; d < 3; ++d) all &= !anchor.acts(d) || fixed[3 * anchor.node + d];
+  return all;
+}
+
 Eigen::Matrix3d AnchoredNodes::inverse_of_free(const Anchor& anchor) const {
   Eigen::Matrix3d free = Eigen::Matrix3d::Zero();
   for (int d = 0; d < 3; ++d) free(d, d) = anchor.acts(d) && !fixed[3 * anchor.node + d];
-  if (free.isZero(0)) return free;
   const Eigen::Matrix3d I = Eigen::Matrix3d::Identity();
   return free * Eigen::Matrix3d(free * anchor.stiffness * free + I - free).inverse() * free;
 }
@@ -266,6 +271,7 @@ std::vector<char> AnchoredNodes::fixed_corners() const {
 Eigen::VectorXd AnchoredNodes::eliminated(const Eigen::VectorXd& r) const {
   Eigen::VectorXd b = r.head(3 * corners);
   for (const Anchor& a : anchors) {  // K (u_node - sum w u) = r_node
+    if (holds(a)) continue;
     const Vec3 force = a.stiffness * inverse_of_free(a) * r.segment<3>(3 * a.node);
     for (int n = 0; n < 8; ++n) b.segment<3>(3 * a.corners[n]) += a.weights[n] * force;
   }
@@ -301,6 +307,7 @@ void AnchoredNodes::complete(const Eigen::VectorXd& r, const Eigen::VectorXd& of
   z.head(3 * corners) = of_corners;
   carry(carried, z);
   for (const Anchor& a : anchors) {
+    if (holds(a)) continue;
     Vec3 mean = Vec3::Zero();
     for (int n = 0; n < 8; ++n) mean += a.weights[n] * z.segment<3>(3 * a.corners[n]);
     z.segment<3>(3 * a.node) = inverse_of_free(a) * (r.segment<3>(3 * a.node) + a.stiffness * mean);

@@ -62,6 +62,8 @@ struct AnchoredNodes {
   int corners = 0;          ///< nodes that are corners; the anchored ones follow
 
   AnchoredNodes(const Network& network, std::vector<char> fixed_unknowns);
+  /// Whether supports hold the node of an anchor in all directions in which it acts, as in all cases.
+  bool holds(const Anchor& anchor) const;
   /// Inverse of an anchor's stiffness in the free directions of its node; zero in others.
   Eigen::Matrix3d inverse_of_free(const Anchor& anchor) const;
   std::vector<char> unknowns_of_corners() const { return {fixed.begin(), fixed.begin() + 3 * corners}; }  ///< fixed?
