@@ -67,6 +67,16 @@ VectorField solenoidal() {
 
 enum class Shape { straight, distorted, tetrahedra };
 
+/// Of a solution at the problem's points, relative to the displacement that u(X) gives.
+template <class Displacement>
+double l2_error_of(const fem::GridProblem& problem, const Displacement& u) {
+  const fem::Solution solution = fem::solve_grid(problem);
+  EXPECT_TRUE(solution.ok) << solution.message;
+  NodalVectors exact(problem.points.rows(), 3);
+  for (Eigen::Index i = 0; i < exact.rows(); ++i) exact.row(i) = u(Vec3(problem.points.row(i).transpose())).transpose();
+  return (solution.displacement - exact).norm() / exact.norm();
+}
+
 double l2_error(const VectorField& u, int degree, double nu, int cells, Shape mesh) {
   int coarse = cells, refinements = 0;
   for (; mesh != Shape::tetrahedra && coarse % 2 == 0 && coarse > 2; coarse /= 2) ++refinements;
@@ -83,11 +93,7 @@ double l2_error(const VectorField& u, int degree, double nu, int cells, Shape me
   const IsotropicMaterial material = problem.material;
   problem.body_force = [&u, material](const Vec3& x, double) { return body_force(u, x, material); };
   problem.points = test::points_inside(Vec3::Ones(), 3000);
-  const fem::Solution solution = fem::solve_grid(problem);
-  EXPECT_TRUE(solution.ok) << solution.message;
-  NodalVectors exact(problem.points.rows(), 3);
-  for (Eigen::Index i = 0; i < exact.rows(); ++i) exact.row(i) = displacement(u, problem.points.row(i)).transpose();
-  return (solution.displacement - exact).norm() / exact.norm();
+  return l2_error_of(problem, [&u](const Vec3& X) { return displacement(u, X); });
 }
 
 struct OrderCase {
@@ -153,14 +159,7 @@ double large_strain_error(const LargeStrainCase& row, int cells) {
       std::string(row.law) == "hencky" ? test::hencky(problem.material) : test::neo_hookean(problem.material);
   problem.body_force = [&](const Vec3& X, double) { return test::body_force(x, P, 0, X, 0); };
   problem.points = test::points_inside(Vec3::Ones(), 1000);
-  const fem::Solution solution = fem::solve_grid(problem);
-  EXPECT_TRUE(solution.ok) << solution.message;
-  NodalVectors exact(problem.points.rows(), 3);
-  for (Eigen::Index i = 0; i < exact.rows(); ++i) {
-    const Vec3 X = problem.points.row(i).transpose();
-    exact.row(i) = (x(X, 0) - X).transpose();
-  }
-  return (solution.displacement - exact).norm() / exact.norm();
+  return l2_error_of(problem, [&x](const Vec3& X) -> Vec3 { return x(X, 0) - X; });
 }
 
 class FemOrderAtLargeStrain : public testing::TestWithParam<LargeStrainCase> {};
@@ -208,14 +207,7 @@ double error_in_motion(const MotionCase& row, int cells, int steps) {
   problem.motion = fem::MotionRequest{.duration = 1, .energy_momentum = row.energy_momentum};
   problem.steps = steps;
   problem.points = test::points_inside(Vec3::Ones(), 500);
-  const fem::Solution solution = fem::solve_grid(problem);
-  EXPECT_TRUE(solution.ok) << solution.message;
-  NodalVectors exact(problem.points.rows(), 3);
-  for (Eigen::Index i = 0; i < exact.rows(); ++i) {
-    const Vec3 X = problem.points.row(i).transpose();
-    exact.row(i) = (x(X, 1) - X).transpose();
-  }
-  return (solution.displacement - exact).norm() / exact.norm();
+  return l2_error_of(problem, [&x](const Vec3& X) -> Vec3 { return x(X, 1) - X; });
 }
 
 class FemOrderInTime : public testing::TestWithParam<MotionCase> {};
