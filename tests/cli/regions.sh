@@ -74,6 +74,13 @@ awk -F, '$6 ~ /^region/ { if ($3 == "own") own[$6] = $7; else built[$6] = $7 }
 sed 's/^youngs_modulus_Pa = 1e3/youngs_modulus_Pa = 2e3/' "$work/own.toml" >"$work/other.toml"
 refused "other.toml:[0-9]+:[0-9]+: compare.models: soft.json: /regions: core .E = 1000 Pa, nu = 0.3, .*allowed: the ..region..s of the case, core .E = 2000 Pa" compare "$work/other.toml" --out "$work/none"
 
+# Whole cubes of each region are counted.
+sed '/^\[\[expect/,$d; s/^models = .*/models = ["msm_18"]/; s/^cells = \[32.*/elements = []/' \
+  "$(dirname "$0")/../../comparisons/experiments/regions/layered_block.toml" >"$work/cubes.toml"
+"$program" compare "$work/cubes.toml" --out "$work/cubes" >"$work/log" 2>&1
+[ "$(tr -d ' \n' <"$work/cubes/results.json" | grep -o '"regions":\[.*' | grep -o '"cells":\[[0-9]*\]' | head -2 | tr '\n' ' ')" = '"cells":[96] "cells":[32] ' ] ||
+  fail "cells of regions in whole cubes" "$work/log" "$work/cubes/results.json"
+
 # spoilt NAME PATTERN SED-EXPRESSION: one line that says file, line, key, what is allowed
 spoilt() {
   ball_case 1e5 0.3 | sed -E "$3" >"$work/case.toml"
