@@ -1,7 +1,6 @@
 // Bodies of several materials: each is cut as a body of its own, and bonds tie them in the cubes that they share.
 #include <gtest/gtest.h>
 
-#include "msm/distribution/model_part.h"
 #include "msm/dynamics/natural_modes.h"
 #include "msm/dynamics/time_step.h"
 #include "msm/embedding/supports.h"
@@ -413,7 +412,6 @@ TEST(SeveralMaterials, AreRefusedByWhatKnowsOne) {
   const IsotropicMaterial one{1, 0.3, 1000};
   const MassSpringModel model = model_of(cut, {one, {2, 0.3, 1000}});
   EXPECT_FALSE(can(model, Capability::mass_average));
-  EXPECT_THROW(part_of(model, std::vector<char>(model.network.nodes(), 1)), std::invalid_argument);
   EXPECT_THROW(model_of(cut, {one}), InputError);
 }
 
