@@ -110,6 +110,17 @@ Stability stability_of(const Equilibrium& state, const Mesh& mesh, const MotionR
   return s;
 }
 
+/// Forces of gravity on the nodes [N] at a fraction of the loads.
+NodalVectors weight_of_body(const PreparedCase& prepared, const Lattice& lattice, const EmbeddedModel& built,
+                            double factor) {
+  const Experiment& e = prepared.experiment;
+  std::vector<Load> gravity = prepared.loads;
+  std::erase_if(gravity, [](const Load& load) { return !std::holds_alternative<Gravity>(load); });
+  return transfer(gravity, *lattice.mesh, built.embedding, built.model.network, e.materials.front().density,
+                  e.model_kinematics(), factor)
+      .external;
+}
+
 /// One network of a model, solved and measured.
 ModelSample run_sample(const PreparedCase& prepared, const Lattice& lattice, std::size_t number,
                        const ModelParameters& parameters, const IsotropicMaterial& material) {
@@ -167,7 +178,9 @@ ModelSample measured(const PreparedCase& prepared, const Lattice& lattice, const
   if (by_material && asked(e, "region"))
     sample.scalars.merge(region_means(built.model, e.regions, sample.state.displacement, e.model_kinematics()));
   if (by_material && asked(e, "interface"))
-    sample.scalars.merge(interface_forces(built.model, e.regions, sample.state.displacement, e.model_kinematics()));
+    sample.scalars.merge(interface_forces(built.model, e.regions, sample.state.displacement,
+                                          weight_of_body(prepared, lattice, built, sample.state.load_reached),
+                                          e.model_kinematics()));
   if (asked(e, "network")) add_network(network, sample.scalars);
   if (asked(e, "line")) {
     sample.line = sample_line(*e.line, *kelvin_of(e), built.model, sample.state.displacement);

@@ -1,11 +1,13 @@
 #include "comparisons/models/region_means.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <stdexcept>
 #include <utility>
 
 #include "comparisons/reference/region_measures.h"
+#include "msm/embedding/cut_lattice.h"
 #include "msm/laws/filled_volume.h"
 #include "msm/laws/turned_bond.h"
 
@@ -16,11 +18,8 @@ namespace {
 Vec3 mean_displacement(const Network& network, std::size_t cell, const NodalVectors& u) {
   const FilledPart& part = network.cells.part(cell);
   Vec3 sum = Vec3::Zero();
-  for (int a = 0; a < 8; ++a) {
-    const Vec3 s(corner_side(a, 0), corner_side(a, 1), corner_side(a, 2));
-    const double mixed = s[1] * s[2] * part.mixed[0] + s[2] * s[0] * part.mixed[1] + s[0] * s[1] * part.mixed[2];
-    sum += (1. / 8 + s.dot(part.mean) / 4 + mixed / 2) * u.row(network.cells.corners[cell][a]).transpose();
-  }
+  for (int a = 0; a < 8; ++a)
+    sum += weight_of_corner(part, a) / part.fraction * u.row(network.cells.corners[cell][a]).transpose();
   return sum;
 }
 
@@ -145,19 +144,34 @@ void add_bonds(const Network& network, const NodalVectors& u, Kinematics kinemat
   }
 }
 
+/// Mass of the cells of each material at the nodes, in that of material 0: nodes x materials.
+Eigen::MatrixXd masses_of_materials(const CellSet& cells, Eigen::Index nodes, Eigen::Index materials) {
+  Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(nodes, materials);
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    const int m = cells.material(c);
+    const double of_cube = std::pow(cells.edge_of(c), 3) * cells.relative_densities[m];
+    for (int n = 0; n < 8; ++n) mass(cells.corners[c][n], m) += of_cube * weight_of_corner(cells.part(c), n);
+  }
+  return mass;
+}
+
 /// Of corners that cells of several materials have.
 void add_common_corners(const AveragedSprings& law, const Network& network, const NodalVectors& u,
-                        Kinematics kinematics, InterfaceForces& forces) {
+                        const NodalVectors& weight, Kinematics kinematics, InterfaceForces& forces) {
   std::map<int, std::set<int>> at;  // node, materials
   for (std::size_t c = 0; c < network.cells.size(); ++c)
     for (const int n : network.cells.corners[c]) at[n].insert(network.cells.material(c));
   std::erase_if(at, [](const auto& node) { return node.second.size() < 2; });
   if (at.empty()) return;
-  std::vector<NodalVectors> of_material;
+  const Eigen::MatrixXd mass =
+      masses_of_materials(network.cells, u.rows(), static_cast<Eigen::Index>(law.regions.size() + 1));
+  std::vector<NodalVectors> of_material;  // of its springs, and of its weight
   for (int m = 0; m <= static_cast<int>(law.regions.size()); ++m) {
     const Network cells = cells_of(network, m);
     of_material.push_back(kinematics == Kinematics::finite ? forces_of(law, cells, network.X + u)
                                                            : linear_forces_of(law, cells, u));
+    for (const auto& [node, materials] : at)
+      of_material.back().row(node) += mass(node, m) / mass.row(node).sum() * weight.row(node);
   }
   for (const auto& [node, materials] : at)
     for (const int on : materials)
@@ -171,12 +185,13 @@ void add_common_corners(const AveragedSprings& law, const Network& network, cons
 }  // namespace
 
 std::map<std::string, double> interface_forces(const MassSpringModel& model, const std::vector<MaterialRegion>& regions,
-                                               const NodalVectors& u, Kinematics kinematics) {
+                                               const NodalVectors& u, const NodalVectors& weight,
+                                               Kinematics kinematics) {
   const AveragedSprings* law = averaged_springs_of(model);
   if (!law) throw std::invalid_argument("a model without averaged springs has no regions");
   InterfaceForces forces;
   add_bonds(model.network, u, kinematics, forces);
-  add_common_corners(*law, model.network, u, kinematics, forces);
+  add_common_corners(*law, model.network, u, weight, kinematics, forces);
   return interface_measures(regions, forces.all());
 }
 

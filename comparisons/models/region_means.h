@@ -20,9 +20,12 @@ std::map<std::string, double> region_means(const MassSpringModel& model, const s
                                            const NodalVectors& u, Kinematics kinematics);
 
 /// interface.<region>.<other>.force of the same cells: of the bonds between two materials and, where cells of both have
-/// common corners, half of the difference of their forces there.
+/// common corners, half of the difference of their forces there, those of gravity included; other loads on common
+/// corners count half for each.
+/// @param weight forces of gravity on the nodes [N], n x 3
 /// @throws std::invalid_argument if the model has no averaged springs.
 std::map<std::string, double> interface_forces(const MassSpringModel& model, const std::vector<MaterialRegion>& regions,
-                                               const NodalVectors& u, Kinematics kinematics);
+                                               const NodalVectors& u, const NodalVectors& weight,
+                                               Kinematics kinematics);
 
 }  // namespace springproof

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "comparisons/reference/run_keeper.h"
+#include "comparisons/report/words.h"
 #include "comparisons/run/model_samples.h"
 #include "comparisons/run/prepare.h"
 #include "comparisons/run/run_json.h"
@@ -97,7 +98,6 @@ ReadyCase make_ready(const std::filesystem::path& file, const MpiOptions& option
   ReadyCase ready;
   agree(PETSC_COMM_WORLD, [&] {
     const Experiment e = only(options.suite.poisson_ratios, read_experiment(file));
-    require_one_material(e, "springproof-mpi");
     ready.numbers = models_at_rest(e, options.models);
     ready.prepared = prepare(e);
     if (!is_first()) return;
@@ -116,13 +116,14 @@ void print(const std::string& title, const ModelSample& sample, const std::vecto
     if (wanted(measure, measures)) to_stdout("  {}: {:.9g} {}\n", measure, value, unit_of(measure));
 }
 
-/// Solves a model on a lattice at a material.  What has no result is said and left to `compare`.
+/// Solves a model on a lattice at one material of each region.  What has no result is said and left to `compare`.
 int solve_model(const PreparedCase& prepared, std::size_t l, std::size_t number, const IsotropicMaterial& material,
                 double tolerance, const RunKeeper& keeper) {
   const Lattice& lattice = prepared.lattices[l];
   const Experiment& e = prepared.experiment;
-  const std::string title = fmt::format("{}, nu = {}, {} cells", e.models[number].label, material.poisson_ratio,
-                                        cells_text(lattice.cells, " x "));
+  const std::string title =
+      fmt::format("{}, {}, {} cells", e.models[number].label, words::setting_text(e, e.setting_of(material)),
+                  cells_text(lattice.cells, " x "));
   try {
     const std::vector<ModelSample> samples = solve_samples(prepared, lattice, number, e.at_rest(material), tolerance);
     for (const ModelSample& sample : samples) print(title, sample, e.measures);
@@ -138,18 +139,19 @@ int solve_case(const std::filesystem::path& file, const MpiOptions& options) {
   const ReadyCase ready = make_ready(file, options);
   const Experiment& e = ready.prepared.experiment;
   int status = all_solved;
-  for (std::size_t m = 0; m < e.materials.size(); ++m) {
+  for (std::size_t s = 0; s < e.settings().size(); ++s) {
+    const PreparedCase prepared = at_setting(ready.prepared, s);
     RunKeeper keeper;
     if (is_first()) {
-      const PlannedPart& part = ready.plan.cases.front().parts[m];
+      const PlannedPart& part = ready.plan.cases.front().parts[s];
       const std::filesystem::path kept = options.suite.out / "parts" / part.file;
       keeper = RunKeeper(std::filesystem::path(kept).replace_extension(".runs"), part.stamp, {});
       std::filesystem::remove(kept);  // by an earlier run of compare
     }
-    for (std::size_t l = 0; l < ready.prepared.lattices.size(); ++l)
+    for (std::size_t l = 0; l < prepared.lattices.size(); ++l)
       for (const std::size_t number : ready.numbers)
-        if (small_enough(e, *ready.prepared.lattices[l].mesh))
-          status = std::max(status, solve_model(ready.prepared, l, number, e.materials[m], options.tolerance, keeper));
+        if (small_enough(e, *prepared.lattices[l].mesh))
+          status = std::max(status, solve_model(prepared, l, number, e.body_material(s), options.tolerance, keeper));
   }
   return status;
 }

@@ -291,9 +291,11 @@ void check_region_models(const PreparedCase& prepared) {
     if (is_external(e.models[m]) || can) continue;
     throw InputError(
         e.models[m].where,
-        fmt::format("compare.models: {} is of one material in a body (allowed beside [[region]]: lattices of cells of "
-                    "one size without momentum dispersion, as hybmss_avg; a springs file of such; or models = [])",
-                    e.models[m].label));
+        fmt::format(
+            "compare.models: {} is of one material in a body{} (allowed beside [[region]]: lattices of cells of "
+            "one size without momentum dispersion, as hybmss_avg; a springs file of such; or models = [])",
+            e.models[m].label,
+            has_cut_cells(p.row) ? "" : ": at an interface its springs cross, or its nodes have one dilatation"));
   }
 }
 

@@ -93,8 +93,9 @@ std::vector<RegionRecord> regions_of(const PreparedCase& p) {
     for (std::size_t c = 0; c < body.materials.size(); ++c)
       if (body.materials[c] == r) record.volume_m3 += volumes[static_cast<Eigen::Index>(c)];
     for (const Lattice& lattice : p.lattices)
-      if (lattice.cut)
-        record.cells.push_back(static_cast<int>(std::ranges::count(lattice.cut->cells, int(r), &CutCell::material)));
+      record.cells.push_back(static_cast<int>(lattice.cut
+                                                  ? std::ranges::count(lattice.cut->cells, int(r), &CutCell::material)
+                                                  : std::ranges::count(lattice.mesh->materials, r)));
   }
   return all;
 }

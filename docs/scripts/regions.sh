@@ -94,6 +94,49 @@ about() {
     else printf "%.8f", L - (k1 * (L * at - at * at / 2) + k2 * (L - at) ^ 2 / 2) / (k1 * at + k2 * (L - at)) }'
 }
 
+# A layer THICKNESS in a bar of cells of EDGE, bent along it (b) or pulled across it (s); without one if it is 0.
+# layer KIND EDGE THICKNESS PLACE
+layer() {
+  local name=layer_$1_$2_$3_$4 from to load='displacement_m = [8e-5, 0, 0]' region=
+  [ "$1" = s ] || load=$'rotation_deg = 0.1\naxis = [0, 1, 0]\nabout_m = [0.04, 0.01, 0.01]'
+  from=$([ "$1" = b ] && random "$4" 0 "$(awk "BEGIN { print 0.02 - $3 }")" || random "$4" 0.02 0.05)
+  to=$(awk "BEGIN { print $from + $3 }")
+  local box="[$from, 0, 0], [$to, 0.02, 0.02]"
+  [ "$1" = s ] || box="[0, 0, $from], [0.08, 0.02, $to]"
+  [ "$3" = 0 ] || region=$'[[region]]\nname = "layer"\nyoungs_modulus_Pa = [1e2, 1e3, 1e5, 1e6]\npoisson_ratio = 0.0\nbox_m = ['$box]
+  echo "$name,$from" >>"$folder/places"
+  cat >"$folder/$name.toml" <<TOML
+[body]
+geo = "block.geo"
+size_m = [0.08, 0.02, 0.02]
+voxel_edge_m = $2
+[material]
+youngs_modulus_Pa = 1e4
+poisson_ratio = 0.0
+$region
+[[load]]
+on = "x_min"
+displacement_m = [0, 0, 0]
+[[load]]
+on = "x_max"
+$load
+[compare]
+models = ["hybmss_avg"]
+measures = ["reaction"]
+[reference]
+elements = []
+TOML
+}
+
+for edge in 0.005 0.0025; do
+  for kind in b s; do
+    layer $kind $edge 0 1
+    for place in 1 2 3 4; do
+      layer $kind $edge $edge $place
+      layer $kind $edge "$(awk "BEGIN { print $edge / 2 }")" $place
+    done
+  done
+done
 for place in 0 1 2 3 4 5 6; do
   ball contrast 0.3 '[1e2, 1e5, 1e6, 1e8]' 0.3 $place
   ball inside_499 0.3 1e4 0.499 $place
@@ -172,5 +215,18 @@ awk -F, '
     printf "| %s | %.3f | %.3f | %s | %s |\n", words, exact, fem[name, setting] / 100, mean_and_rms(name SUBSEP setting SUBSEP 4), mean_and_rms(name SUBSEP setting SUBSEP 8)
   }
 ' "$folder/places" "$folder/results/results.csv"
+printf '\n| bar with a thin layer: along (b) or across (s), cells, thickness, E | mean | rms |\n|---|---|---|\n'
+awk -F, '
+  function bending(E, from, to) { return E * 0.02 * ((to - 0.01) ^ 3 - (from - 0.01) ^ 3) / 3 }
+  FNR == NR { place[$1] = $2; next }
+  $1 !~ /^layer/ || $3 != "hybmss_avg" { next }
+  { split($1, of, "_"); from = place[$1]; to = from + of[4]; E = of[4] == 0 ? 1e4 : $4; x = $7 < 0 ? -$7 : $7 }
+  $6 == "torque.x_max.y" && of[2] == "b" {
+    exact = (bending(1e4, 0, from) + bending(E, from, to) + bending(1e4, to, 0.02)) * 0.1 * 3.14159265358979 / 180 / 0.08
+  }
+  $6 == "force.x_max.x" && of[2] == "s" { exact = 8e-5 * 4e-4 / ((0.08 - of[4]) / 1e4 + of[4] / E) }
+  exact { key = of[2] ", " of[3] ", " of[4] ", " E; d = 100 * (x / exact - 1); n[key]++; sum[key] += d; square[key] += d * d; exact = 0 }
+  END { for (key in n) printf "| %s | %+.2f | %.2f |\n", key, sum[key] / n[key], sqrt(square[key] / n[key]) }
+' "$folder/places" "$folder/results/results.csv" | sort
 awk -F, '$1 == "sphere" && $3 == "hybmss_avg" && $6 == "region.core.pressure" { printf "layered ball, pressure in the core, %s: %+.1f %%\n", $5, 100 * ($7 / 1200 - 1) }' \
   "$folder/results/results.csv"

@@ -89,11 +89,17 @@ std::array<int, 9> nodes_of_anchor(const Anchor& a) {
   return nodes;
 }
 
+std::array<int, 16> nodes_of_bond(const InterfaceBond& b) {
+  std::array<int, 16> nodes;
+  std::copy(b.corners[1].begin(), b.corners[1].end(),
+            std::copy(b.corners[0].begin(), b.corners[0].end(), nodes.begin()));
+  return nodes;
+}
+
 }  // namespace
 
 ModelPart part_of(const MassSpringModel& whole, const std::vector<char>& own_nodes) {
   if (!whole.network.image_of.empty()) throw std::invalid_argument("a periodic network is not parted");
-  if (!whole.network.cells.materials.empty()) throw std::invalid_argument("a body of several materials is not parted");
   if (!can(whole, Capability::energy))
     throw std::invalid_argument("its forces have no energy, so its stiffness is not symmetric");
   if (const MomentumDispersion* dispersion = dispersion_of(whole);
@@ -115,6 +121,7 @@ ModelPart part_of(const MassSpringModel& whole, const std::vector<char>& own_nod
   network.cells = all.cells.of(part.cells);
   network.triangles = of_numbers(all.triangles, acting(all.triangles, own, themselves));
   network.anchors = of_numbers(all.anchors, acting(all.anchors, own, nodes_of_anchor));
+  network.bonds = of_numbers(all.bonds, acting(all.bonds, own, nodes_of_bond));
   PartOfLaws values{springs, all.springs.size(), part.cells, all.cells.size()};
   for (ForceLaw& law : part.model.laws) std::visit([&](auto& l) { l.fields(values); }, law);
   return part;

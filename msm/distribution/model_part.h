@@ -7,8 +7,8 @@
 
 namespace springproof {
 
-/// Every spring, triangle, cell and anchor that acts on a node of the part's own, among all nodes of the whole: the
-/// forces on own nodes and their rows of the tangent are those of the whole model.  Those of other nodes are not
+/// Every spring, triangle, cell, anchor and bond that acts on a node of the part's own, among all nodes of the whole:
+/// the forces on own nodes and their rows of the tangent are those of the whole model.  Those of other nodes are not
 /// complete.
 struct ModelPart {
   MassSpringModel model;   ///< springs and cells in the order of the whole

@@ -5,12 +5,24 @@
 namespace springproof {
 namespace {
 
-MassSpringModel without_volume_term(const MassSpringModel& model) {
-  MassSpringModel springs = model;
-  if (auto* averaged = law_of<AveragedSprings>(springs)) averaged->lame_lambda = averaged->shear_modulus;
-  erase_laws<VolumeCorrection>(springs);
-  erase_laws<MomentumDispersion>(springs);
-  return springs;
+/// kappa > 0 of each material, which it takes from the model's laws; 0 where springs bear the volume, as nu <= 1/4.
+std::vector<double> take_volume_terms(MassSpringModel& model) {
+  erase_laws<MomentumDispersion>(model);
+  if (auto* averaged = law_of<AveragedSprings>(model)) {
+    MixedParts parts = mixed_parts(*averaged);
+    *averaged = std::move(parts.springs);
+    return std::move(parts.kappa);
+  }
+  std::vector<double> kappa;
+  const auto take = [&](VolumeCorrection& of) {
+    kappa.push_back(std::max(0.0, of.kappa));
+    of.kappa = std::min(0.0, of.kappa);
+  };
+  if (auto* volume = law_of<VolumeCorrection>(model)) {
+    take(*volume);
+    for (VolumeCorrection& of : volume->regions) take(of);
+  }
+  return kappa;
 }
 
 /// dV/du of a cell at rest [m^2].
@@ -23,24 +35,23 @@ Eigen::Matrix<double, 24, 1> volume_gradient(const MassSpringModel& model, std::
   return gradient;
 }
 
-void set_pressures_of_cells(const MassSpringModel& model, PressureForm& form) {
+void set_pressures_of_cells(const MassSpringModel& model, const std::vector<double>& kappa, PressureForm& form) {
   const Network& network = model.network;
-  const AveragedSprings* averaged = averaged_springs_of(model);
-  const double kappa =
-      averaged ? averaged->lame_lambda - averaged->shear_modulus : law_of<VolumeCorrection>(model)->kappa;
   const Carriers carriers = carriers_of(network.nodes(), network.cells.carried);
   std::vector<Eigen::Triplet<double>> entries;
   entries.reserve(24 * network.cells.size());
-  form.C.resize(static_cast<Eigen::Index>(network.cells.size()));
+  form.C = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(network.cells.size()));
   for (std::size_t c = 0; c < network.cells.size(); ++c) {
     const int row = static_cast<int>(c);
+    const double of_cell = kappa[network.cells.material(c)];
+    if (of_cell == 0) continue;
     const Eigen::Matrix<double, 24, 1> gradient = volume_gradient(model, c);
     for (int n = 0; n < 8; ++n) {
       for_each_carrier(carriers, network.cells.corners[c][n], [&](int node, double weight) {
         for (int d = 0; d < 3; ++d) entries.emplace_back(row, 3 * node + d, weight * gradient[3 * n + d]);
       });
     }
-    form.C[row] = filled_volume(network, c) / kappa;
+    form.C[row] = filled_volume(network, c) / of_cell;
   }
   form.B.resize(form.C.size(), 3 * network.nodes());
   form.B.setFromTriplets(entries.begin(), entries.end());
@@ -65,8 +76,9 @@ void set_pressures_of_nodes(const MassSpringModel& model, PressureForm& form) {
 }  // namespace
 
 PressureForm pressure_form(const MassSpringModel& model) {
-  PressureForm form{without_volume_term(model), {}, {}};
-  dispersion_of(model) ? set_pressures_of_nodes(model, form) : set_pressures_of_cells(model, form);
+  PressureForm form{model, {}, {}};
+  const std::vector<double> kappa = take_volume_terms(form.springs);
+  dispersion_of(model) ? set_pressures_of_nodes(model, form) : set_pressures_of_cells(model, kappa, form);
   return form;
 }
 

@@ -8,7 +8,7 @@ namespace springproof {
 /// K = A + B^T C^-1 B, A the stiffness of `springs`: with a pressure p = C^-1 B u per cell (volume correction, averaged
 /// springs), or per node (momentum dispersion).
 struct PressureForm {
-  MassSpringModel springs;  ///< the model without its volume term
+  MassSpringModel springs;  ///< the model without its volume term, but in materials where that softens: nu < 1/4
   NodalForms B;             ///< of cells dV/du [m^2], of nodes dJ/du [N]; places x 3 n, no force on a carried node
   Eigen::VectorXd C;        ///< one per place [m^3/Pa, N m]; 0: no pressure there
 };

@@ -32,15 +32,6 @@ Eigen::SparseMatrix<double, Eigen::RowMajor> surface_weights(const CutBody& body
   return all;
 }
 
-/// Integral of a corner's trilinear weight over the filled part, in units of the volume of the cube; the moment of
-/// third order is left out, so that force and moment of a uniform body force are exact.
-double weight_of_corner(const FilledPart& part, int corner) {
-  Vec3 s;
-  for (int d = 0; d < 3; ++d) s[d] = 2.0 * hexahedron_corners[corner][d] - 1;
-  const double mixed = s[1] * s[2] * part.mixed[0] + s[2] * s[0] * part.mixed[1] + s[0] * s[1] * part.mixed[2];
-  return part.fraction * (0.125 + s.dot(part.mean) / 4 + mixed / 2);
-}
-
 /// The materials of the cells, their densities, and the bonds between them.
 void add_materials(const CutBody& body, const std::vector<IsotropicMaterial>& materials, Network& network) {
   for (const CutCell& cell : body.cells) network.cells.materials.push_back(static_cast<std::uint8_t>(cell.material));
@@ -50,6 +41,13 @@ void add_materials(const CutBody& body, const std::vector<IsotropicMaterial>& ma
 }
 
 }  // namespace
+
+double weight_of_corner(const FilledPart& part, int corner) {
+  Vec3 s;
+  for (int d = 0; d < 3; ++d) s[d] = 2.0 * hexahedron_corners[corner][d] - 1;
+  const double mixed = s[1] * s[2] * part.mixed[0] + s[2] * s[0] * part.mixed[1] + s[0] * s[1] * part.mixed[2];
+  return part.fraction * (0.125 + s.dot(part.mean) / 4 + mixed / 2);
+}
 
 Network cut_lattice(const CutBody& body, const std::vector<std::string>& held,
                     const std::vector<IsotropicMaterial>& materials) {

@@ -10,6 +10,10 @@
 
 namespace springproof {
 
+/// Integral of a corner's trilinear weight over the filled part, in units of the volume of the cube; the moment of
+/// third order is left out, so that force and moment of a uniform body force are exact.
+double weight_of_corner(const FilledPart& part, int corner);
+
 /// The cells as a network: nodes are the corners of the cells, with an eighth of a cell's volume each, and those, of no
 /// volume, of the anchors of the patches `held`; of several materials with their bonds (supports.h).
 /// `materials`: of the cells, by their number.

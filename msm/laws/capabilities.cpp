@@ -99,7 +99,8 @@ std::string lacks(const Network& network, Capability what) {
       if (!cells.materials.empty()) return of_several;
       return cells.grid ? "" : "its network is no lattice of equal cells";
     case cut_multigrid:
-      return cells.cut() ? "" : "its cells are not cut";
+      if (cells.kind() == CellKind::cubes && !cells.materials.empty() && !periodic) return "";
+      return cells.cut() ? "" : "its cells are not cut, or cubes of several materials";
     case nodal_pressures:
       return cells.grid && !periodic ? "" : "its network is no lattice of equal cells, or is periodic";
     case relaxation:

@@ -126,7 +126,7 @@ class BraessSarazin {
     require(MatMatMult(D, B_transposed, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &DB_transposed_));
     require(MatScale(DB_transposed_, damped));
     require(MatMatMult(B_, DB_transposed_, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &S_));
-    require(MatAXPY(S_, -1, minus_C, SUBSET_NONZERO_PATTERN));
+    require(MatAXPY(S_, -1, minus_C, DIFFERENT_NONZERO_PATTERN));  // cells without a pressure have no row in B
     require(MatCreateVecs(S_, &r_, nullptr));
   }
 

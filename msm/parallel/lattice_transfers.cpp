@@ -85,15 +85,11 @@ std::vector<EquationNumbers> equations_of(const std::vector<Weights>& weights, s
   return equations;
 }
 
-/// The points that move the corners of cells with anchors; of the network also the anchored nodes.
+/// The points that move the corners of cells with anchors or bonds; of the network also the anchored nodes.
 std::vector<char> points_at_anchors(const CutLevel& level, const std::vector<Anchor>& nodes, std::size_t points) {
   std::vector<char> marked(points, 0);
-  const Carriers carriers = carriers_of(static_cast<int>(level.point.size()), level.carried);
-  for (const Anchor& a : level.anchors)
-    for (const int corner : a.corners) {
-      marked[corner] = 1;
-      for_each_carrier(carriers, corner, [&](int p, double) { marked[p] = 1; });
-    }
+  for (const std::vector<int>& together : level.anchored_points())
+    for (const int point : together) marked[point] = 1;
   for (const Anchor& a : nodes) marked[a.node] = 1;
   return marked;
 }

@@ -16,5 +16,13 @@ Physical Surface("x_min") = {x_min[]};
 Physical Surface("y_min") = {y_min[]};
 Physical Surface("z_min") = {z_min[]};
 Physical Surface("z_max") = {z_max[]};
-Mesh.CharacteristicLengthMin = edge;
+// Finer around the bone, whose section is what the load meets.
+Field[1] = Cylinder;
+Field[1].XCenter = 0; Field[1].YCenter = 0; Field[1].ZCenter = 0;
+Field[1].XAxis = 0; Field[1].YAxis = 0; Field[1].ZAxis = 1.1 * size_z;
+Field[1].Radius = 0.4 * size_x;
+Field[1].VIn = edge / 2; Field[1].VOut = edge;
+Background Field = 1;
+Mesh.CharacteristicLengthExtendFromBoundary = 0;
+Mesh.CharacteristicLengthMin = edge / 2;
 Mesh.CharacteristicLengthMax = edge;

@@ -7,5 +7,12 @@ eps = 1e-6;
 Physical Volume("liver") = {1};
 bottom[] = Surface In BoundingBox{-size_x, -size_y, -eps, size_x, size_y, eps};
 Physical Surface("bottom") = {bottom[]};
-Mesh.CharacteristicLengthMin = edge;
+// Finer around what is pressed and what lies below it.
+Field[1] = Ball;
+Field[1].XCenter = 0.005; Field[1].YCenter = 0; Field[1].ZCenter = 0.035;
+Field[1].Radius = 0.022; Field[1].Thickness = 0.01;
+Field[1].VIn = edge / 1.4; Field[1].VOut = edge;
+Background Field = 1;
+Mesh.CharacteristicLengthExtendFromBoundary = 0;
+Mesh.CharacteristicLengthMin = edge / 1.4;
 Mesh.CharacteristicLengthMax = edge;

@@ -170,6 +170,23 @@ CutLevel coarsen(CutLevel& fine) {
   return coarse;
 }
 
+/// Corners that supports hold themselves, as in whole cubes, as anchors of a level's cells: coarser levels have none
+/// there.  30 E A/l, A = l^2, E = 5/2 G.
+std::vector<Anchor> held_corners(const CutLevel& level, const AnchoredNodes& nodes, const AveragedSprings& law) {
+  std::vector<Anchor> held;
+  const auto at_point = cells_at_points(level);
+  for (int p = 0; p < nodes.corners; ++p) {
+    Anchor a{level.corners[at_point[p].front()], {}, -1, Eigen::Matrix3d::Zero()};
+    for (int n = 0; n < 8; ++n) a.weights[n] = a.corners[n] == p;
+    double G = 0;
+    for (const int c : at_point[p]) G = std::max(G, law.in(level.material(c)).shear_modulus);
+    for (int d = 0; d < 3; ++d)
+      if (nodes.fixed[3 * p + d]) a.stiffness(d, d) = 75 * G * level.edge;
+    if (a.stiffness.trace() > 0) held.push_back(a);
+  }
+  return held;
+}
+
 }  // namespace
 
 std::vector<std::vector<int>> CutLevel::anchored_points() const {
@@ -315,7 +332,7 @@ void AnchoredNodes::complete(const Eigen::VectorXd& r, const Eigen::VectorXd& of
   for (const CarriedPoint& c : carried) z.segment<3>(3 * c.point).setZero();
 }
 
-std::vector<CutLevel> cut_levels(const Network& network, const AnchoredNodes& nodes) {
+std::vector<CutLevel> cut_levels(const Network& network, const AnchoredNodes& nodes, const AveragedSprings* law) {
   CutLevel finest;
   finest.edge = network.cells.edge;
   finest.corners = network.cells.corners;
@@ -340,11 +357,17 @@ std::vector<CutLevel> cut_levels(const Network& network, const AnchoredNodes& no
     if ((inverse.diagonal().array() > 0).all()) continue;  // nothing holds its node
     finest.anchors.push_back({a.corners, a.weights, a.node, a.stiffness - a.stiffness * inverse * a.stiffness});
   }
+  const std::size_t anchors = finest.anchors.size();
+  if (law && network.anchors.empty() && network.cells.carried.empty()) {
+    const std::vector<Anchor> held = held_corners(finest, nodes, *law);
+    finest.anchors.insert(finest.anchors.end(), held.begin(), held.end());
+  }
   std::vector<CutLevel> levels = {std::move(finest)};
   while (levels.back().point.size() > smallest_cut_level && levels.back().cubes.size() > 8) {
     CutLevel coarse = coarsen(levels.back());
     levels.push_back(std::move(coarse));
   }
+  levels.front().anchors.resize(anchors);
   return levels;
 }
 

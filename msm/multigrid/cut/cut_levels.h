@@ -79,7 +79,10 @@ struct AnchoredNodes {
 };
 
 /// The levels of a network of cut cells, without their matrices, finest first.
-std::vector<CutLevel> cut_levels(const Network& network, const AnchoredNodes& nodes);
+/// @param law of the cells, by which coarser levels have springs where supports hold corners; nullptr: those of
+///   anchors alone
+std::vector<CutLevel> cut_levels(const Network& network, const AnchoredNodes& nodes,
+                                 const AveragedSprings* law = nullptr);
 
 /// Sets a level's matrix, with anchors and without the rows and columns of `fixed` (empty: none), from that of its
 /// cells alone.

@@ -341,7 +341,7 @@ CutMixedMultigrid::CutMixedMultigrid(const MassSpringModel& model, const std::ve
     gradient_.col(static_cast<Eigen::Index>(c)) = row.gradient;
     compliance_[static_cast<Eigen::Index>(c)] = row.compliance;
   }
-  std::vector<CutLevel> lattices = cut_levels(network_, nodes_);
+  std::vector<CutLevel> lattices = cut_levels(network_, nodes_, &law);
   const double finest_edge = lattices[0].edge;
   for (CutLevel& lattice : lattices) {
     const bool finest = levels_.empty();

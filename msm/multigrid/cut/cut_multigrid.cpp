@@ -17,7 +17,7 @@ CutMultigrid::CutMultigrid(const MassSpringModel& model, const std::vector<char>
   const CellSet& cells = model.network.cells;
   const AveragedSprings law = measured ? mean_springs(*measured, cells) : *averaged_springs_of(model);
   unit_ = law.shear_modulus * cells.edge;
-  for (CutLevel& lattice : cut_levels(model.network, nodes_)) {
+  for (CutLevel& lattice : cut_levels(model.network, nodes_, &law)) {
     const bool finest = levels_.empty();
     const std::vector<char> fixed_here = finest ? nodes_.fixed_corners() : std::vector<char>{};
     CutMatrix<double> of_cells(finest && measured

@@ -6,6 +6,7 @@
 #include "msm/distribution/model_part.h"
 #include "msm/distribution/pressure_form.h"
 #include "msm/parameters/calibrate.h"
+#include "support/two_materials.h"
 #include "support/zoo.h"
 
 namespace springproof::model_part_test {
@@ -26,7 +27,23 @@ MassSpringModel cut(const std::string& name) {
   return model;
 }
 
+/// In one of them springs bear the volume, in the others pressures may.
+MassSpringModel of_three_materials(const std::string& name) {
+  const std::vector<IsotropicMaterial> others = {{3e5, 0.49, 1000}, {1e3, 0.1, 1000}};
+  if (!name.ends_with("bonds")) {
+    Mesh mesh = steps();
+    for (std::size_t c = 0; c < mesh.hexahedra.size(); ++c) mesh.materials.push_back(c % 3);
+    return build_embedded(test::model("hybmss"), mesh, material, nullptr, others).model;
+  }
+  const Mesh body = test::with_materials(test::solid_of(block_mesh(Vec3(5, 4, 2), {5, 4, 2})), [](const Vec3& x) {
+    return x[0] < 2 ? 0 : x[1] < 2 ? 1 : 2;
+  });
+  const CutBody cells = cut_body({Vec3(-0.3, -0.2, -0.4), 1, {6, 5, 3}}, body);
+  return build_cut(test::model("hybmss_avg"), cells, {"x_min"}, Mesh{}, material, others).model;
+}
+
 MassSpringModel whole(const std::string& name) {
+  if (name.starts_with("three materials")) return of_three_materials(name);
   if (name.ends_with("cells")) return cut(name);
   if (name == "angular") return {test::bent_triangles(), {Springs{}, AngularSprings{20}}, false};
   return build_model(test::model(name), steps(), material);
@@ -37,7 +54,7 @@ class Parts : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Models, Parts,
                          testing::Values("hybmss", "hybmss_bt", "hybmss_avg", "emsm", "msm_18", "emsm_random",
                                          "emsm_patch", "msm_random", "emsm_centred", "cut cells", "refined cells",
-                                         "angular"),
+                                         "angular", "three materials", "three materials and bonds"),
                          [](const auto& p) {
                            std::string name = p.param;
                            std::replace(name.begin(), name.end(), ' ', '_');
