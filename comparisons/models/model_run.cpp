@@ -163,6 +163,8 @@ ModelSample measured(const PreparedCase& prepared, const Lattice& lattice, const
           : at_measured_points(prepared, lattice, sample.field.displacement));
   if (cut && averaged_springs_of(built.model) && asked(e, "promised_error") && !in_motion)
     sample.scalars["promised_error"] = cell_energies(built.model, sample.state.displacement).promised_error();
+  if (averaged_springs_of(built.model) && asked(e, "stress_error") && !in_motion)
+    sample.stress = recovered_stress(built.model, sample.state.displacement);
   const bool by_material = !network.cells.materials.empty();
   if (by_material && asked(e, "region"))
     sample.scalars.merge(region_means(built.model, e.regions, sample.state.displacement, e.model_kinematics()));

@@ -35,11 +35,19 @@ NodalVectors at_lattice_nodes(const PreparedCase& prepared, const NodalVectors& 
 /// @throws InputError naming a probe outside the body.
 NodalVectors at_measured_points(const PreparedCase& prepared, const Lattice& lattice, const NodalVectors& displacement);
 
-/// Rest positions at which the reference's stress is requested: the probes, if the case measures it there, then the
-/// surface that is pictured.
+/// Nodal values of a mesh of hexahedra at points; beyond it the nearest cell is extrapolated.
+NodalVectors at_points(const Mesh& mesh, const NodalVectors& of_nodes, const NodalVectors& points);
+
+/// Rest positions at which the reference's stress is requested: the probes, if the case measures it there, points all
+/// over the body, if the case compares it, then the surface that is pictured.
 NodalVectors stress_points(const PreparedCase& prepared);
 
-/// The rows of the surface among those.
+/// The first row of those all over the body among these, and of the surface.
+Eigen::Index first_compared_stress(const PreparedCase& prepared);
 Eigen::Index first_pictured_stress(const PreparedCase& prepared);
+
+/// The volume that each point from first_compared_stress() on stands for [m^3]; of the surface 0.  Empty: the case does
+/// not compare stresses.
+Eigen::VectorXd compared_stress_volumes(const PreparedCase& prepared);
 
 }  // namespace springproof

@@ -13,6 +13,7 @@
 #include "comparisons/run/case_rows.h"
 #include "comparisons/run/cut_extrapolation.h"
 #include "comparisons/run/model_samples.h"
+#include "comparisons/run/stress_rows.h"
 #include "comparisons/run/varied_runs.h"
 #include "msm/statics/equilibrium.h"
 #include "problem/case_file/external.h"
@@ -22,7 +23,8 @@
 namespace springproof {
 namespace {
 
-void save(PartRun& run, std::size_t lattice, const std::string& model, const Field& field) {
+void save(PartRun& run, std::size_t lattice, const std::string& model, const Field& field,
+          const std::array<NodalVectors, 2>& stress = {}) {
   const auto* reference = reference_at_rest(run, lattice, model);
   const NodalVectors* truth = reference ? &reference->field.displacement : nullptr;
   const RunKey key = run.key(model, lattice);
@@ -35,6 +37,10 @@ void save(PartRun& run, std::size_t lattice, const std::string& model, const Fie
   if (run.vtu.folder.empty()) return;
   std::vector<std::pair<std::string, NodalVectors>> extra;
   if (truth && model != "fem") extra.emplace_back("difference_to_fem", field.displacement - *truth);
+  if (stress[0].rows() == field.displacement.rows()) {  // else those of cut cells
+    extra.emplace_back("normal_stress", stress[0]);
+    extra.emplace_back("shear_stress", stress[1]);
+  }
   write_vtu(run.vtu.folder / (file_stem(key) + ".vtu"), field, extra, run.notes(key));
   write_file(run.vtu.folder / (file_stem(key) + ".csv"), csv_of(field.mesh->nodes, field.displacement));
 }
@@ -111,7 +117,7 @@ void add_first_sample(PartRun& run, std::size_t lattice, std::size_t number, con
   const Experiment& e = run.experiment();
   const std::string& label = e.models[number].label;
   const RunKey key = run.key(label, lattice);
-  save(run, lattice, label, sample.field);
+  save(run, lattice, label, sample.field, sample.stress);
   if (sample.line) static_cast<RunKey&>(run.part.lines.emplace_back(*sample.line)) = key;
   if (!e.models[number].in_motion) return;
   add_motion(run, lattice, label, sample.field, sample.motion);
@@ -135,13 +141,16 @@ void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
   }
   if (fields.empty()) return;
   add_rows(run, lattice, label, kind, fields, scalars);
+  if (const auto& stress = samples.front().stress; stress[0].rows() > 0)
+    add_stress_errors(run, key, kind, stresses_of(run, lattice, run.prepared.models[number], stress));
   if (const auto* reference = reference_at_rest(run, lattice, label); reference && is_external(e.models[number]))
     run.part.runs.back().message = unit_doubt(fields.front(), reference->field.displacement);
   if (!run.prepared.models[number].cut.value_or(false)) return add_splits(run, lattice, label, fields, scalars);
   const NodalVectors& u = samples.front().state.displacement;
   if (!run.vtu.folder.empty())
     write_cells(run.vtu.folder / (file_stem(key) + "_cells.vtu"),
-                cells_of(run.prepared.lattices[lattice], run.prepared.models[number]), u, run.notes(key));
+                cells_of(run.prepared.lattices[lattice], run.prepared.models[number]), u, run.notes(key),
+                samples.front().stress);
   run.cut_states.push_back({lattice, number, u, samples.front().field.displacement, scalars.front()});
   add_splits_of_cut_cells(run, lattice, number, fields, scalars);
 }
@@ -206,6 +215,7 @@ void add_fem(PartRun& run, std::size_t lattice) {
     if (wanted("frequency", run.experiment().measures) && !run.experiment().body.is_voxels())
       scalars.merge(lowest_frequencies(run.prepared, here, s.grid.element, run.material));
     add_rows(run, lattice, name, run.part.runs.back().kinematics, {at_nodes(here, s.displacement)}, {scalars});
+    add_stress_errors(run, run.key(name, lattice), run.part.runs.back().kinematics, stresses_of(run, s.stress));
     save(run, lattice, name, sampled_field(here, s));
   }
 }

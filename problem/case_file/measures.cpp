@@ -88,6 +88,10 @@ std::vector<std::string> stress_rows(const Experiment& experiment) {
   return rows;
 }
 
+std::vector<std::string> stress_error_rows(const Experiment&) {
+  return {"stress_error.von_mises", "stress_error.hydrostatic", "stress_error.peak"};
+}
+
 /// What is measured of a region, with its unit.
 const std::vector<std::pair<std::string, std::string>> of_region = {
     {".volume_change", "1"}, {".mean_stress", "Pa"}, {".pressure", "Pa"}, {".displacement", "m"}, {".energy", "J"}};
@@ -215,6 +219,10 @@ const std::vector<Measure>& measure_table() {
      "", "", measured_rows},
     {"probe", value, {{"displacement", "m"}}, "displacement.PROBE.x|y|z|magnitude [m]", "", "", probe_rows},
     {"stress", value, {{"stress", "Pa"}}, "stress.PROBE.xx|yy|zz|xy|yz|xz [Pa], finite elements only", "", "", stress_rows},
+    {"stress_error", distance, {{"stress_error", "1"}},
+     "stress_error.von_mises|hydrostatic|peak of `hybmss_avg` and finite elements, small strain: relative L2 difference to FEM over the body, and of the largest",
+     "stress error", "of von Mises’ and of the mean normal stress, recovered at nodes: |σ − σ_fem| in the L2 norm over the body, divided by |σ_fem|; peak: of the largest von Mises stress, where that of FEM converges",
+     stress_error_rows},
     {"region", value, {{"region", "1"}}, "region.REGION.volume_change, .mean_stress.xx|yy|zz|xy|yz|xz and .pressure [Pa], .displacement.x|y|z|magnitude [m] in the mean, .energy [J] of a [[region]]",
      "", "", region_rows},
     {"interface", value, {{"interface", "N"}}, "interface.REGION.OTHER.force.x|y|z|magnitude, force on a region by another, named earlier, or by the `body`'s own material [N]",
