@@ -1,28 +1,39 @@
 // Stresses against those of the reference.
 #pragma once
 
+#include <array>
+
 #include "comparisons/judge/measures.h"
 
 namespace springproof {
 
-/// How far stresses are off.
-struct StressDifference {
-  double von_mises = 0;  ///< L2 norm over the body, relative to that of von Mises' stress [1]
-  double hydrostatic =
-      0;            ///< of the mean normal stress; relative to its norm, or a tenth of von Mises' if that is more [1]
-  double peak = 0;  ///< largest von Mises' stress, relative; negative: too small [1]
-  Eigen::Index place = 0;  ///< row of the largest true one
+/// What is compared of a stress, in the order of the columns of invariants().
+inline constexpr std::array<const char*, 3> invariant_names = {"von_mises", "hydrostatic", "principal"};
+
+/// Von Mises' stress, the mean normal stress and the largest principal stress [Pa], one row per point.
+NodalVectors invariants(const ProbeStresses& stress);
+
+/// The invariants of the reference.
+struct StressLimit {
+  NodalVectors of_points;                ///< one row per point [Pa]
+  std::array<ReferenceField, 3> fields;  ///< each invariant's in its own column
+  ReferenceValue peak;                   ///< largest von Mises' stress of all points [Pa]
+  Eigen::Index place = 0;                ///< its row
+
+  /// Whether the peak grows with every grid, as at a singular edge or corner: there is nothing to compare with.
+  bool peak_is_singular() const;
 };
 
-/// @param volumes of the points [m^3]; 0: for the peak alone
-StressDifference stress_difference(const ProbeStresses& stress, const ProbeStresses& truth,
-                                   const Eigen::VectorXd& volumes);
+/// Each invariant as extrapolate() takes a field; where the grids' differences point apart, its uncertainty is that of
+/// scalars that do not converge monotonically.
+/// @param grids stresses at the same points on three grids, coarse to fine
+/// @param volumes that points stand for [m^3]; 0: they count for the peak alone
+/// @param doubt of the displacement, as extrapolate() takes it
+StressLimit stress_limit(const std::array<ProbeStresses, 3>& grids, const Eigen::VectorXd& volumes,
+                         const GridRatios& ratios = {}, double doubt = 0);
 
-/// Largest von Mises' stress [Pa].
-double peak_stress(const ProbeStresses& stress);
-
-/// Whether the peaks of three grids, coarse to fine, have a limit: at a singular edge or corner each step is as large
-/// as the last.
-bool peaks_converge(double coarse, double middle, double fine);
+/// L2 norms over the body [1], relative to the invariant's own, or to a tenth of von Mises' if that is more.
+/// @param off differences of the invariants, one row per point [Pa]
+Eigen::Vector3d stress_errors(const NodalVectors& off, const StressLimit& limit, const Eigen::VectorXd& volumes);
 
 }  // namespace springproof

@@ -81,23 +81,21 @@ NodalVectors at_points(const Mesh& mesh, const NodalVectors& of_nodes, const Nod
 
 namespace {
 
-/// Of a body of voxels the middles of its coarsest tetrahedra, of a block the nodes of its finest lattice.
-std::pair<NodalVectors, Eigen::VectorXd> compared_stresses(const PreparedCase& prepared) {
-  if (!wanted("stress_error.peak", prepared.experiment.measures)) return {NodalVectors(0, 3), Eigen::VectorXd(0)};
-  if (!prepared.experiment.body.is_voxels()) {
-    const Mesh& finest = *prepared.lattices[finest_lattice(prepared)].mesh;
-    return {finest.nodes, nodal_volumes(finest)};
-  }
-  const Mesh& body = *prepared.body.tetrahedra.front();
-  const auto count = static_cast<Eigen::Index>(body.tetrahedra.size());
-  std::pair<NodalVectors, Eigen::VectorXd> out = {NodalVectors(count, 3), Eigen::VectorXd(count)};
-  for (Eigen::Index t = 0; t < count; ++t) {
-    const auto& corners = body.tetrahedra[static_cast<std::size_t>(t)];
-    Eigen::Matrix3d edges;
-    for (int k = 0; k < 3; ++k) edges.row(k) = body.nodes.row(corners[k + 1]) - body.nodes.row(corners[0]);
-    out.first.row(t) = body.nodes.row(corners[0]) + edges.colwise().sum() / 4;
-    out.second[t] = edges.determinant() / 6;
-  }
+/// Of a body of voxels the coarsest tetrahedra, of a block the cells of its finest lattice; none: no case compares
+/// there.
+const Mesh* cells_of_stresses(const PreparedCase& prepared) {
+  const std::vector<std::string>& measures = prepared.experiment.measures;
+  if (!wanted("stress_error", measures) && !wanted("stress_peak", measures)) return nullptr;
+  return prepared.experiment.body.is_voxels() ? prepared.body.tetrahedra.front().get()
+                                              : prepared.lattices[finest_lattice(prepared)].mesh.get();
+}
+
+NodalVectors middles(const Mesh* mesh) {
+  if (!mesh) return NodalVectors(0, 3);
+  NodalVectors out(static_cast<Eigen::Index>(mesh->hexahedra.size() + mesh->tetrahedra.size()), 3);
+  Eigen::Index row = 0;
+  for (const auto& cell : mesh->hexahedra) out.row(row++) = mesh->nodes(cell, Eigen::all).colwise().mean();
+  for (const auto& cell : mesh->tetrahedra) out.row(row++) = mesh->nodes(cell, Eigen::all).colwise().mean();
   return out;
 }
 
@@ -109,26 +107,24 @@ NodalVectors pictured_surface(const PreparedCase& prepared) {
 
 }  // namespace
 
-Eigen::Index first_compared_stress(const PreparedCase& prepared) {
+Eigen::Index stress_probes(const PreparedCase& prepared) {
   const Experiment& e = prepared.experiment;
   return wanted("stress", e.measures) ? static_cast<Eigen::Index>(e.probes.size()) : 0;
 }
 
-Eigen::Index first_pictured_stress(const PreparedCase& prepared) {
-  return first_compared_stress(prepared) + compared_stresses(prepared).first.rows();
-}
+Eigen::Index pictured_stresses(const PreparedCase& prepared) { return pictured_surface(prepared).rows(); }
 
 NodalVectors stress_points(const PreparedCase& prepared) {
-  const NodalVectors probes = probe_points(prepared.experiment).topRows(first_compared_stress(prepared));
-  return stacked(stacked(probes, compared_stresses(prepared).first), pictured_surface(prepared));
+  const NodalVectors probes = probe_points(prepared.experiment).topRows(stress_probes(prepared));
+  return stacked(stacked(probes, middles(cells_of_stresses(prepared))), pictured_surface(prepared));
 }
 
-Eigen::VectorXd compared_stress_volumes(const PreparedCase& prepared) {
-  Eigen::VectorXd volumes = compared_stresses(prepared).second;
-  if (volumes.size() == 0) return volumes;
-  const Eigen::Index compared = volumes.size(), surface = pictured_surface(prepared).rows();
-  volumes.conservativeResize(compared + surface);
-  volumes.tail(surface).setZero();
+Eigen::VectorXd stress_volumes(const PreparedCase& prepared) {
+  Eigen::VectorXd volumes = Eigen::VectorXd::Zero(stress_points(prepared).rows());
+  if (const Mesh* cells = cells_of_stresses(prepared)) {
+    const Eigen::VectorXd of_cells = cell_volumes(*cells, cells->nodes);
+    volumes.segment(stress_probes(prepared), of_cells.size()) = of_cells;
+  }
   return volumes;
 }
 

@@ -38,16 +38,15 @@ NodalVectors at_measured_points(const PreparedCase& prepared, const Lattice& lat
 /// Nodal values of a mesh of hexahedra at points; beyond it the nearest cell is extrapolated.
 NodalVectors at_points(const Mesh& mesh, const NodalVectors& of_nodes, const NodalVectors& points);
 
-/// Rest positions at which the reference's stress is requested: the probes, if the case measures it there, points all
-/// over the body, if the case compares it, then the surface that is pictured.
+/// Rest positions at which stresses are requested: the probes, if the case measures them there, the middles of cells
+/// all over the body, if it compares them, then the surface that is pictured.
 NodalVectors stress_points(const PreparedCase& prepared);
 
-/// The first row of those all over the body among these, and of the surface.
-Eigen::Index first_compared_stress(const PreparedCase& prepared);
-Eigen::Index first_pictured_stress(const PreparedCase& prepared);
+/// How many of these are probes, and of the surface.
+Eigen::Index stress_probes(const PreparedCase& prepared);
+Eigen::Index pictured_stresses(const PreparedCase& prepared);
 
-/// The volume that each point from first_compared_stress() on stands for [m^3]; of the surface 0.  Empty: the case does
-/// not compare stresses.
-Eigen::VectorXd compared_stress_volumes(const PreparedCase& prepared);
+/// The volume that each of them stands for [m^3]: 0 of probes and of the surface.
+Eigen::VectorXd stress_volumes(const PreparedCase& prepared);
 
 }  // namespace springproof

@@ -239,7 +239,7 @@ std::map<std::string, double> measures_of(const PreparedCase& prepared, const fe
   const std::vector<Probe>& probes = prepared.experiment.probes;
   auto values =
       field_measures(prepared, sampled_field(prepared.lattices.front(), s), at_measured(prepared, s.displacement));
-  if (const Eigen::Index measured = first_compared_stress(prepared); measured > 0 && s.stress.rows() >= measured)
+  if (const Eigen::Index measured = stress_probes(prepared); measured > 0 && s.stress.rows() >= measured)
     values.merge(stress_measures(probes, s.stress.topRows(measured)));
   values.merge(region_measures(prepared.experiment.regions, s.regions));
   values.merge(interface_measures(prepared.experiment.regions, s.interfaces));

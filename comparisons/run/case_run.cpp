@@ -91,6 +91,12 @@ std::size_t cells_in_body(const Lattice& lattice, const ModelParameters& paramet
   return parameters.cut.value_or(false) ? cells_of(lattice, parameters).cells.size() : lattice.mesh->hexahedra.size();
 }
 
+/// Stresses on the picture that was added last, of the true surface where there is one.
+void add_to_picture(PartRun& run, const ProbeStresses& stress) {
+  if (stress.rows() > 0)
+    run.part.pictures.back().von_mises = von_mises(stress.bottomRows(pictured_stresses(run.prepared)));
+}
+
 /// What is recorded of the run of a sample, with a result or without.
 Run model_run(const PartRun& run, std::size_t lattice, std::size_t number, const ModelSample& sample) {
   const Experiment& e = run.experiment();
@@ -112,13 +118,21 @@ Run model_run(const PartRun& run, std::size_t lattice, std::size_t number, const
   return record;
 }
 
-/// The pictures, the line and the motion of a model, of its first sample that has a result.
-void add_first_sample(PartRun& run, std::size_t lattice, std::size_t number, const ModelSample& sample) {
+/// The pictures, the line, the stresses and the motion of a model, of its first sample that has a result.
+void add_first_sample(PartRun& run, std::size_t lattice, std::size_t number, const ModelSample& sample,
+                      std::map<std::string, double>& scalars) {
   const Experiment& e = run.experiment();
   const std::string& label = e.models[number].label;
   const RunKey key = run.key(label, lattice);
   save(run, lattice, label, sample.field, sample.stress);
   if (sample.line) static_cast<RunKey&>(run.part.lines.emplace_back(*sample.line)) = key;
+  if (sample.stress[0].rows() > 0) {
+    const ProbeStresses stress = at_stress_points(run, lattice, run.prepared.models[number], sample.stress);
+    if (const Eigen::Index probes = stress_probes(run.prepared); probes > 0)
+      scalars.merge(stress_measures(e.probes, stress.topRows(probes)));
+    add_stress_errors(run, key, kinematics_of_models(e), stress);
+    if (lattice == 0) add_to_picture(run, stress);
+  }
   if (!e.models[number].in_motion) return;
   add_motion(run, lattice, label, sample.field, sample.motion);
   add_motion_rows(run, blank_row(run, key, kinematics_of_models(e)), run.part.histories.back());
@@ -135,14 +149,12 @@ void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
     run.part.runs.push_back(model_run(run, lattice, number, sample));
     if (sample.stability) add_stable_load(run, blank_row(run, key, kind), sample.stability->load_reached);
     if (!sample.state.ok) continue;
-    if (fields.empty()) add_first_sample(run, lattice, number, sample);
-    fields.push_back(sample.field.displacement);
     scalars.push_back(sample.scalars);
+    if (fields.empty()) add_first_sample(run, lattice, number, sample, scalars.front());
+    fields.push_back(sample.field.displacement);
   }
   if (fields.empty()) return;
   add_rows(run, lattice, label, kind, fields, scalars);
-  if (const auto& stress = samples.front().stress; stress[0].rows() > 0)
-    add_stress_errors(run, key, kind, stresses_of(run, lattice, run.prepared.models[number], stress));
   if (const auto* reference = reference_at_rest(run, lattice, label); reference && is_external(e.models[number]))
     run.part.runs.back().message = unit_doubt(fields.front(), reference->field.displacement);
   if (!run.prepared.models[number].cut.value_or(false)) return add_splits(run, lattice, label, fields, scalars);
@@ -186,15 +198,6 @@ void run_fracture_model(PartRun& run, std::size_t lattice, std::size_t number) {
   run.part.cracks.push_back(std::move(samples.cracks));
 }
 
-/// The reference's stress on its picture, of the true surface where there is one: the last that was added.
-void add_stress(PartRun& run) {
-  const auto& stress = run.grids.elements.front().grids.back().stress;
-  const Eigen::Index first = first_pictured_stress(run.prepared);
-  Picture& p = run.part.pictures.back();
-  if (stress.rows() - first == static_cast<Eigen::Index>(p.rest.size() / 3))
-    p.von_mises = von_mises(stress.bottomRows(stress.rows() - first));
-}
-
 /// The finite elements' results at the nodes of one lattice.
 void add_fem(PartRun& run, std::size_t lattice) {
   const Lattice& here = run.prepared.lattices[lattice];
@@ -202,7 +205,7 @@ void add_fem(PartRun& run, std::size_t lattice) {
     Field field = sampled_field(here, run.grids.elements.front().grids.back());
     field.displacement = run.reference[lattice]->field.displacement;
     save(run, lattice, "fem", field);
-    if (lattice == 0) add_stress(run);
+    if (lattice == 0) add_to_picture(run, run.grids.elements.front().grids.back().stress);
   }
   if (lattice >= run.grids.peers.size()) return;
   for (const fem::Solution& s : run.grids.peers[lattice]) {
@@ -215,7 +218,7 @@ void add_fem(PartRun& run, std::size_t lattice) {
     if (wanted("frequency", run.experiment().measures) && !run.experiment().body.is_voxels())
       scalars.merge(lowest_frequencies(run.prepared, here, s.grid.element, run.material));
     add_rows(run, lattice, name, run.part.runs.back().kinematics, {at_nodes(here, s.displacement)}, {scalars});
-    add_stress_errors(run, run.key(name, lattice), run.part.runs.back().kinematics, stresses_of(run, s.stress));
+    add_stress_errors(run, run.key(name, lattice), run.part.runs.back().kinematics, s.stress);
     save(run, lattice, name, sampled_field(here, s));
   }
 }

@@ -113,8 +113,8 @@ std::vector<std::string> read_measures(const TomlValue& value, const Experiment&
       refuse(item, fmt::format("'{}' needs a plane", measure), "with a [section] in the file");
     if ((measure == "probe" || measure == "stress") && experiment.probes.empty())
       refuse(item, fmt::format("'{}' needs points", measure), "with at least one [[probe]] in the file");
-    if (measure == "stress_error" && experiment.model_kinematics() != Kinematics::linear)
-      refuse(item, "'stress_error' is of small strain", "with kinematics = \"linear\"");
+    if (measure.starts_with("stress_") && experiment.model_kinematics() != Kinematics::linear)
+      refuse(item, fmt::format("'{}' is of small strain", measure), "with kinematics = \"linear\"");
     if (measure == "displacement_error_order" && experiment.exact.empty())
       refuse(item, "'displacement_error_order' needs the solution", "with exact = \"...\" in [compare]");
     if (measure == "reaction_error" && moved_patches(experiment).empty())
