@@ -119,6 +119,12 @@ NodalVectors stress_points(const PreparedCase& prepared) {
   return stacked(stacked(probes, middles(cells_of_stresses(prepared))), pictured_surface(prepared));
 }
 
+NodalVectors requested_stress_points(const PreparedCase& prepared) {
+  const Experiment& e = prepared.experiment;
+  const bool between_nodes = cells_of_stresses(prepared) && !e.body.is_voxels() && !e.models.empty();
+  return stacked(stress_points(prepared), between_nodes ? lattice_points(prepared) : NodalVectors(0, 3));
+}
+
 Eigen::VectorXd stress_volumes(const PreparedCase& prepared) {
   Eigen::VectorXd volumes = Eigen::VectorXd::Zero(stress_points(prepared).rows());
   if (const Mesh* cells = cells_of_stresses(prepared)) {

@@ -42,7 +42,11 @@ NodalVectors at_points(const Mesh& mesh, const NodalVectors& of_nodes, const Nod
 /// all over the body, if it compares them, then the surface that is pictured.
 NodalVectors stress_points(const PreparedCase& prepared);
 
-/// How many of these are probes, and of the surface.
+/// Where the finite elements are asked for them: there, then of a block whose stresses are compared at the nodes of all
+/// lattices, so that those of linear elements can be averaged at nodes.
+NodalVectors requested_stress_points(const PreparedCase& prepared);
+
+/// How many of stress_points() are probes, and of the surface.
 Eigen::Index stress_probes(const PreparedCase& prepared);
 Eigen::Index pictured_stresses(const PreparedCase& prepared);
 

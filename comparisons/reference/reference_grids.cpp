@@ -197,7 +197,7 @@ ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial
   const Experiment& experiment = prepared.experiment;
   fem::Request request = fem::request_of(experiment, material);
   request.points = stacked(lattice_points(prepared), measured_points(prepared));
-  request.stress_points = stress_points(prepared);
+  request.stress_points = requested_stress_points(prepared);
   request.vtu_single = vtu.single;
   for (const std::string& element : experiment.reference.elements)
     add_reference_grids(prepared, element, experiment.reference.grading, vtu, request);

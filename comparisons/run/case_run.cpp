@@ -205,7 +205,7 @@ void add_fem(PartRun& run, std::size_t lattice) {
     Field field = sampled_field(here, run.grids.elements.front().grids.back());
     field.displacement = run.reference[lattice]->field.displacement;
     save(run, lattice, "fem", field);
-    if (lattice == 0) add_to_picture(run, run.grids.elements.front().grids.back().stress);
+    if (lattice == 0) add_to_picture(run, at_stress_points(run, lattice, run.grids.elements.front().grids.back()));
   }
   if (lattice >= run.grids.peers.size()) return;
   for (const fem::Solution& s : run.grids.peers[lattice]) {
@@ -218,7 +218,7 @@ void add_fem(PartRun& run, std::size_t lattice) {
     if (wanted("frequency", run.experiment().measures) && !run.experiment().body.is_voxels())
       scalars.merge(lowest_frequencies(run.prepared, here, s.grid.element, run.material));
     add_rows(run, lattice, name, run.part.runs.back().kinematics, {at_nodes(here, s.displacement)}, {scalars});
-    add_stress_errors(run, run.key(name, lattice), run.part.runs.back().kinematics, s.stress);
+    add_stress_errors(run, run.key(name, lattice), run.part.runs.back().kinematics, at_stress_points(run, lattice, s));
     save(run, lattice, name, sampled_field(here, s));
   }
 }
@@ -235,6 +235,7 @@ Part run_part(const PreparedCase& whole, std::size_t setting, const VtuOutput& v
               .grids = {},
               .reference = {},
               .voxels = {},
+              .stress = {},
               .cut_states = {},
               .in_time = {}};
   if (!vtu.folder.empty()) std::filesystem::create_directories(vtu.folder);

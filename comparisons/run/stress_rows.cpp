@@ -24,7 +24,10 @@ Eigen::Vector3d uncertainties(const StressLimit& limit, const Eigen::VectorXd& v
 }
 
 ReferenceRecord blank_record(const PartRun& run, const std::string& measure) {
-  ReferenceRecord record{.poisson_ratio = run.setting(), .measure = measure, .unit = unit_of(measure)};
+  ReferenceRecord record;
+  record.poisson_ratio = run.setting();
+  record.measure = measure;
+  record.unit = unit_of(measure);
   record.element = run.grids.elements.front().element;
   for (const fem::Solution& s : run.grids.elements.front().grids) record.cells.push_back(s.grid.cells);
   return record;
@@ -75,12 +78,24 @@ ProbeStresses at_stress_points(const PartRun& run, std::size_t lattice, const Mo
   return out;
 }
 
+ProbeStresses at_stress_points(const PartRun& run, std::size_t lattice, const fem::Solution& solution) {
+  const Mesh& mesh = run.mesh(lattice);
+  const NodalVectors points = stress_points(run.prepared);
+  if (solution.grid.element != "q1" || solution.stress.rows() == points.rows())
+    return solution.stress.topRows(std::min(points.rows(), solution.stress.rows()));
+  const ProbeStresses of_nodes =
+      solution.stress.middleRows(points.rows() + run.prepared.lattices[lattice].first_node, mesh.nodes.rows());
+  ProbeStresses out(points.rows(), 6);
+  out << at_points(mesh, of_nodes.leftCols<3>(), points), at_points(mesh, of_nodes.rightCols<3>(), points);
+  return out;
+}
+
 void build_stress_limit(PartRun& run, double doubt) {
   const Eigen::VectorXd volumes = stress_volumes(run.prepared);
   const ElementGrids& first = run.grids.elements.front();
   if (volumes.sum() == 0) return;  // not compared
   std::array<ProbeStresses, 3> grids;
-  for (int g = 0; g < 3; ++g) grids[g] = first.grids[g].stress;
+  for (int g = 0; g < 3; ++g) grids[g] = first.grids[g].stress.topRows(volumes.size());
   run.stress = stress_limit(grids, volumes, ratios_of(first), doubt);
   for (ReferenceField& field : run.stress->fields) widen(run.prepared.body.load_spread, field);
   run.stress->peak.uncertainty += run.prepared.body.load_spread * run.stress->peak.value;
