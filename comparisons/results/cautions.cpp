@@ -60,10 +60,10 @@ void add_stressless(const CaseResult& result, std::vector<std::string>& out) {
   const auto asked =
       std::find_if(measures.begin(), measures.end(), [](const auto& m) { return m.starts_with("stress"); });
   if (asked != measures.end() && !labels.empty())
-    out.push_back(
-        fmt::format("no {} of {}: stresses are recovered from averaged springs (hybmss_avg) of one material "
-                    "at rest and small strain alone",
-                    *asked, fmt::join(labels, ", ")));
+    out.push_back(fmt::format(
+        "no {} of {}: stresses are recovered from averaged springs (hybmss_avg, and lattices in cut cells) of one "
+        "material at rest and small strain alone",
+        *asked, fmt::join(labels, ", ")));
 }
 
 }  // namespace

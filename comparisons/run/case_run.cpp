@@ -130,7 +130,7 @@ void add_first_sample(PartRun& run, std::size_t lattice, std::size_t number, con
     const ProbeStresses stress = at_stress_points(run, lattice, run.prepared.models[number], sample.stress);
     if (const Eigen::Index probes = stress_probes(run.prepared); probes > 0)
       scalars.merge(stress_measures(e.probes, stress.topRows(probes)));
-    add_stress_errors(run, key, kinematics_of_models(e), stress);
+    if (reference_at_rest(run, lattice, label)) add_stress_errors(run, key, kinematics_of_models(e), stress);
     if (lattice == 0) add_to_picture(run, stress);
   }
   if (!e.models[number].in_motion) return;

@@ -60,7 +60,7 @@ void record_peak(PartRun& run, const std::array<ProbeStresses, 3>& grids) {
   record.observed_order = peak.observed_order;
   record.converging = peak.sequence != Sequence::not_converging;
   record.note = fmt::format("at {}; {}", place_of(run), peak.note);
-  if (run.stress->peak_is_singular()) record.note += ": grows with each grid, as at a singular edge; not compared";
+  if (run.stress->peak_is_singular()) record.note += "; has no limit, as at a singular edge: not compared";
   run.part.references.push_back(record);
 }
 
@@ -81,7 +81,7 @@ ProbeStresses at_stress_points(const PartRun& run, std::size_t lattice, const Mo
 ProbeStresses at_stress_points(const PartRun& run, std::size_t lattice, const fem::Solution& solution) {
   const Mesh& mesh = run.mesh(lattice);
   const NodalVectors points = stress_points(run.prepared);
-  if (solution.grid.element != "q1" || solution.stress.rows() == points.rows())
+  if (solution.grid.element != "q1" || solution.stress.rows() <= points.rows())
     return solution.stress.topRows(std::min(points.rows(), solution.stress.rows()));
   const ProbeStresses of_nodes =
       solution.stress.middleRows(points.rows() + run.prepared.lattices[lattice].first_node, mesh.nodes.rows());
