@@ -14,7 +14,8 @@ set(tested_ratios  # a regular expression of cases, their ratios
     "cost/bending" 0.25
     "regions/stiff_balls" 0.49
     "motion/(released_bar|struck_bar.*)" 0.3
-    "bodies/(rabbit|l_bracket)" 0.45)
+    "bodies/(rabbit|l_bracket)" 0.45
+    "verification/stress_plate_with_hole" 0.3)
 
 # Those that repeat at length what others prove in seconds have the label `long`: the papers' figures one by one (`springproof
 # reproduce` draws them), larger bodies, longer motions, costs.

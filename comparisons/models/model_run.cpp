@@ -31,6 +31,12 @@ bool asked(const Experiment& e, const std::string& measure) {
   return std::find(e.measures.begin(), e.measures.end(), measure) != e.measures.end();
 }
 
+/// Whether the case measures stresses, and this model has them: averaged springs of one material at small strain.
+bool recovers_stress(const Experiment& e, const MassSpringModel& model) {
+  return (asked(e, "stress") || asked(e, "stress_error") || asked(e, "stress_peak")) && averaged_springs_of(model) &&
+         e.regions.empty() && e.model_kinematics() == Kinematics::linear;
+}
+
 /// The papers' moduli of a block stretched along x; lengths of the local fields follow from the network's spacing.
 void add_moduli(const PreparedCase& prepared, const MassSpringModel& model, const NodalVectors& u,
                 std::map<std::string, double>& out) {
@@ -174,6 +180,8 @@ ModelSample measured(const PreparedCase& prepared, const Lattice& lattice, const
           : at_measured_points(prepared, lattice, sample.field.displacement));
   if (cut && averaged_springs_of(built.model) && asked(e, "promised_error") && !in_motion)
     sample.scalars["promised_error"] = cell_energies(built.model, sample.state.displacement).promised_error();
+  if (recovers_stress(e, built.model) && !in_motion)
+    sample.stress = recovered_stress(built.model, sample.state.displacement);
   const bool by_material = !network.cells.materials.empty();
   if (by_material && asked(e, "region"))
     sample.scalars.merge(region_means(built.model, e.regions, sample.state.displacement, e.model_kinematics()));

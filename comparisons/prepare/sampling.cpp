@@ -3,6 +3,7 @@
 #include "comparisons/judge/measures.h"
 #include "comparisons/results/picture.h"
 #include "meshes/locate/locate.h"
+#include "meshes/volume.h"
 
 namespace springproof {
 
@@ -65,31 +66,72 @@ NodalVectors at_measured_points(const PreparedCase& prepared, const Lattice& lat
   const Experiment& e = prepared.experiment;
   const Mesh& mesh = *lattice.mesh;
   if (!e.body.is_voxels()) interpolate(mesh, displacement, probe_points(e));  // throws for a probe outside
-  const NodalVectors points = measured_points(prepared);
+  return at_points(mesh, displacement, measured_points(prepared));
+}
+
+NodalVectors at_points(const Mesh& mesh, const NodalVectors& of_nodes, const NodalVectors& points) {
   const Locator locator(mesh);
   NodalVectors out = NodalVectors::Zero(points.rows(), 3);
   for (Eigen::Index i = 0; i < points.rows(); ++i) {
     const Location at = locator(points.row(i).transpose());
-    for (int n = 0; n < 8; ++n) out.row(i) += at.shape[n] * displacement.row(mesh.hexahedra[at.cell][n]);
+    for (int n = 0; n < 8; ++n) out.row(i) += at.shape[n] * of_nodes.row(mesh.hexahedra[at.cell][n]);
   }
   return out;
 }
 
-Eigen::Index first_pictured_stress(const PreparedCase& prepared) {
+namespace {
+
+/// Of a body of voxels the coarsest tetrahedra, of a block the cells of its finest lattice; none: no case compares
+/// there.
+const Mesh* cells_of_stresses(const PreparedCase& prepared) {
+  const std::vector<std::string>& measures = prepared.experiment.measures;
+  if (!wanted("stress_error", measures) && !wanted("stress_peak", measures)) return nullptr;
+  return prepared.experiment.body.is_voxels() ? prepared.body.tetrahedra.front().get()
+                                              : prepared.lattices[finest_lattice(prepared)].mesh.get();
+}
+
+NodalVectors middles(const Mesh* mesh) {
+  if (!mesh) return NodalVectors(0, 3);
+  NodalVectors out(static_cast<Eigen::Index>(mesh->hexahedra.size() + mesh->tetrahedra.size()), 3);
+  Eigen::Index row = 0;
+  for (const auto& cell : mesh->hexahedra) out.row(row++) = mesh->nodes(cell, Eigen::all).colwise().mean();
+  for (const auto& cell : mesh->tetrahedra) out.row(row++) = mesh->nodes(cell, Eigen::all).colwise().mean();
+  return out;
+}
+
+NodalVectors pictured_surface(const PreparedCase& prepared) {
+  if (prepared.lattices.empty() || prepared.experiment.models.empty()) return NodalVectors(0, 3);
+  return pictured_points(prepared.experiment.body.is_voxels() ? *prepared.body.tetrahedra.back()
+                                                              : *prepared.lattices.front().mesh);
+}
+
+}  // namespace
+
+Eigen::Index stress_probes(const PreparedCase& prepared) {
   const Experiment& e = prepared.experiment;
   return wanted("stress", e.measures) ? static_cast<Eigen::Index>(e.probes.size()) : 0;
 }
 
+Eigen::Index pictured_stresses(const PreparedCase& prepared) { return pictured_surface(prepared).rows(); }
+
 NodalVectors stress_points(const PreparedCase& prepared) {
-  const Eigen::Index probes = first_pictured_stress(prepared);
-  const bool pictured = !prepared.lattices.empty() && !prepared.experiment.models.empty();
-  const NodalVectors surface =
-      pictured ? pictured_points(prepared.experiment.body.is_voxels() ? *prepared.body.tetrahedra.back()
-                                                                      : *prepared.lattices.front().mesh)
-               : NodalVectors(0, 3);
-  NodalVectors all(probes + surface.rows(), 3);
-  all << probe_points(prepared.experiment).topRows(probes), surface;
-  return all;
+  const NodalVectors probes = probe_points(prepared.experiment).topRows(stress_probes(prepared));
+  return stacked(stacked(probes, middles(cells_of_stresses(prepared))), pictured_surface(prepared));
+}
+
+NodalVectors requested_stress_points(const PreparedCase& prepared) {
+  const Experiment& e = prepared.experiment;
+  const bool between_nodes = cells_of_stresses(prepared) && !e.body.is_voxels() && !e.models.empty();
+  return stacked(stress_points(prepared), between_nodes ? lattice_points(prepared) : NodalVectors(0, 3));
+}
+
+Eigen::VectorXd stress_volumes(const PreparedCase& prepared) {
+  Eigen::VectorXd volumes = Eigen::VectorXd::Zero(stress_points(prepared).rows());
+  if (const Mesh* cells = cells_of_stresses(prepared)) {
+    const Eigen::VectorXd of_cells = cell_volumes(*cells, cells->nodes);
+    volumes.segment(stress_probes(prepared), of_cells.size()) = of_cells;
+  }
+  return volumes;
 }
 
 }  // namespace springproof

@@ -35,11 +35,22 @@ NodalVectors at_lattice_nodes(const PreparedCase& prepared, const NodalVectors& 
 /// @throws InputError naming a probe outside the body.
 NodalVectors at_measured_points(const PreparedCase& prepared, const Lattice& lattice, const NodalVectors& displacement);
 
-/// Rest positions at which the reference's stress is requested: the probes, if the case measures it there, then the
-/// surface that is pictured.
+/// Nodal values of a mesh of hexahedra at points; beyond it the nearest cell is extrapolated.
+NodalVectors at_points(const Mesh& mesh, const NodalVectors& of_nodes, const NodalVectors& points);
+
+/// Rest positions at which stresses are requested: the probes, if the case measures them there, the middles of cells
+/// all over the body, if it compares them, then the surface that is pictured.
 NodalVectors stress_points(const PreparedCase& prepared);
 
-/// The rows of the surface among those.
-Eigen::Index first_pictured_stress(const PreparedCase& prepared);
+/// Where the finite elements are asked for them: there, then of a block whose stresses are compared at the nodes of all
+/// lattices, so that those of linear elements can be averaged at nodes.
+NodalVectors requested_stress_points(const PreparedCase& prepared);
+
+/// How many of stress_points() are probes, and of the surface.
+Eigen::Index stress_probes(const PreparedCase& prepared);
+Eigen::Index pictured_stresses(const PreparedCase& prepared);
+
+/// The volume that each of them stands for [m^3]: 0 of probes and of the surface.
+Eigen::VectorXd stress_volumes(const PreparedCase& prepared);
 
 }  // namespace springproof

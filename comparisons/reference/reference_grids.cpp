@@ -197,7 +197,7 @@ ReferenceGrids solve_grids(const PreparedCase& prepared, const IsotropicMaterial
   const Experiment& experiment = prepared.experiment;
   fem::Request request = fem::request_of(experiment, material);
   request.points = stacked(lattice_points(prepared), measured_points(prepared));
-  request.stress_points = stress_points(prepared);
+  request.stress_points = requested_stress_points(prepared);
   request.vtu_single = vtu.single;
   for (const std::string& element : experiment.reference.elements)
     add_reference_grids(prepared, element, experiment.reference.grading, vtu, request);
@@ -239,7 +239,7 @@ std::map<std::string, double> measures_of(const PreparedCase& prepared, const fe
   const std::vector<Probe>& probes = prepared.experiment.probes;
   auto values =
       field_measures(prepared, sampled_field(prepared.lattices.front(), s), at_measured(prepared, s.displacement));
-  if (const Eigen::Index measured = first_pictured_stress(prepared); measured > 0 && s.stress.rows() >= measured)
+  if (const Eigen::Index measured = stress_probes(prepared); measured > 0 && s.stress.rows() >= measured)
     values.merge(stress_measures(probes, s.stress.topRows(measured)));
   values.merge(region_measures(prepared.experiment.regions, s.regions));
   values.merge(interface_measures(prepared.experiment.regions, s.interfaces));

@@ -28,7 +28,7 @@ VtuNotes vtu_notes(const std::string& case_name, const RunKey& key, double young
 }
 
 void write_cells(const std::filesystem::path& file, const CutBody& cut, const NodalVectors& displacement,
-                 const VtuNotes& notes) {
+                 const VtuNotes& notes, const std::array<NodalVectors, 2>& stress) {
   const auto mesh = std::make_shared<Mesh>();
   mesh->nodes = cut.points;
   std::vector<double> filled, edge, material;
@@ -41,7 +41,11 @@ void write_cells(const std::filesystem::path& file, const CutBody& cut, const No
   Field field;
   field.mesh = mesh;
   field.displacement = displacement.topRows(cut.points.rows());
-  write_vtu(file, field, {}, notes, {{"filled_fraction", filled}, {"edge_m", edge}, {"material", material}});
+  std::vector<std::pair<std::string, NodalVectors>> extra;
+  if (stress[0].rows() > 0)
+    extra = {{"normal_stress", stress[0].topRows(cut.points.rows())},
+             {"shear_stress", stress[1].topRows(cut.points.rows())}};
+  write_vtu(file, field, extra, notes, {{"filled_fraction", filled}, {"edge_m", edge}, {"material", material}});
 }
 
 void write_series(const CaseResult& result, const std::filesystem::path& folder) {

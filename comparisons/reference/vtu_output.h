@@ -25,9 +25,10 @@ VtuNotes vtu_notes(const std::string& case_name, const RunKey& key, double young
 /// Writes the cells of a cut body, displaced as their corners are, with the fraction of each that is filled and its
 /// edge.
 /// @param displacement one row per point of the cut body [m]; those of anchored nodes follow
+/// @param stress recovered_stress() at the same nodes, or none
 /// @throws std::runtime_error if the file cannot be written.
 void write_cells(const std::filesystem::path& file, const CutBody& cut, const NodalVectors& displacement,
-                 const VtuNotes& notes);
+                 const VtuNotes& notes, const std::array<NodalVectors, 2>& stress = {});
 
 /// Writes a series over Poisson's ratio of each model and resolution of a case, of the VTU files that lie in `folder`.
 /// @throws std::runtime_error if a file cannot be written.

@@ -49,11 +49,29 @@ void add_kinematics(const CaseResult& result, std::vector<std::string>& out) {
                     fmt::join(labels, ", "), labels.size() == 1 ? "s" : "", law, e.kinematics));
 }
 
+/// Of models whose stresses were asked for and are not known.
+void add_stressless(const CaseResult& result, std::vector<std::string>& out) {
+  std::vector<std::string> labels;
+  for (const ModelChoice& model : result.experiment.models)
+    if (std::none_of(result.rows.begin(), result.rows.end(),
+                     [&](const Row& row) { return row.model == model.label && row.measure.starts_with("stress"); }))
+      labels.push_back(model.label);
+  const std::vector<std::string>& measures = result.experiment.measures;
+  const auto asked =
+      std::find_if(measures.begin(), measures.end(), [](const auto& m) { return m.starts_with("stress"); });
+  if (asked != measures.end() && !labels.empty())
+    out.push_back(fmt::format(
+        "no {} of {}: stresses are recovered from averaged springs (hybmss_avg, and lattices in cut cells) of one "
+        "material at rest and small strain alone",
+        *asked, fmt::join(labels, ", ")));
+}
+
 }  // namespace
 
 std::vector<std::string> cautions(const CaseResult& result) {
   std::vector<std::string> out;
   add_ride(result, out);
+  add_stressless(result, out);
   if (result.experiment.model_kinematics() != Kinematics::linear) add_kinematics(result, out);
   return out;
 }

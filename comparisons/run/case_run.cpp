@@ -13,6 +13,7 @@
 #include "comparisons/run/case_rows.h"
 #include "comparisons/run/cut_extrapolation.h"
 #include "comparisons/run/model_samples.h"
+#include "comparisons/run/stress_rows.h"
 #include "comparisons/run/varied_runs.h"
 #include "msm/statics/equilibrium.h"
 #include "problem/case_file/external.h"
@@ -22,7 +23,8 @@
 namespace springproof {
 namespace {
 
-void save(PartRun& run, std::size_t lattice, const std::string& model, const Field& field) {
+void save(PartRun& run, std::size_t lattice, const std::string& model, const Field& field,
+          const std::array<NodalVectors, 2>& stress = {}) {
   const auto* reference = reference_at_rest(run, lattice, model);
   const NodalVectors* truth = reference ? &reference->field.displacement : nullptr;
   const RunKey key = run.key(model, lattice);
@@ -35,6 +37,10 @@ void save(PartRun& run, std::size_t lattice, const std::string& model, const Fie
   if (run.vtu.folder.empty()) return;
   std::vector<std::pair<std::string, NodalVectors>> extra;
   if (truth && model != "fem") extra.emplace_back("difference_to_fem", field.displacement - *truth);
+  if (stress[0].rows() == field.displacement.rows()) {  // else those of cut cells
+    extra.emplace_back("normal_stress", stress[0]);
+    extra.emplace_back("shear_stress", stress[1]);
+  }
   write_vtu(run.vtu.folder / (file_stem(key) + ".vtu"), field, extra, run.notes(key));
   write_file(run.vtu.folder / (file_stem(key) + ".csv"), csv_of(field.mesh->nodes, field.displacement));
 }
@@ -85,6 +91,12 @@ std::size_t cells_in_body(const Lattice& lattice, const ModelParameters& paramet
   return parameters.cut.value_or(false) ? cells_of(lattice, parameters).cells.size() : lattice.mesh->hexahedra.size();
 }
 
+/// Stresses on the picture that was added last, of the true surface where there is one.
+void add_to_picture(PartRun& run, const ProbeStresses& stress) {
+  if (stress.rows() > 0)
+    run.part.pictures.back().von_mises = von_mises(stress.bottomRows(pictured_stresses(run.prepared)));
+}
+
 /// What is recorded of the run of a sample, with a result or without.
 Run model_run(const PartRun& run, std::size_t lattice, std::size_t number, const ModelSample& sample) {
   const Experiment& e = run.experiment();
@@ -106,13 +118,21 @@ Run model_run(const PartRun& run, std::size_t lattice, std::size_t number, const
   return record;
 }
 
-/// The pictures, the line and the motion of a model, of its first sample that has a result.
-void add_first_sample(PartRun& run, std::size_t lattice, std::size_t number, const ModelSample& sample) {
+/// The pictures, the line, the stresses and the motion of a model, of its first sample that has a result.
+void add_first_sample(PartRun& run, std::size_t lattice, std::size_t number, const ModelSample& sample,
+                      std::map<std::string, double>& scalars) {
   const Experiment& e = run.experiment();
   const std::string& label = e.models[number].label;
   const RunKey key = run.key(label, lattice);
-  save(run, lattice, label, sample.field);
+  save(run, lattice, label, sample.field, sample.stress);
   if (sample.line) static_cast<RunKey&>(run.part.lines.emplace_back(*sample.line)) = key;
+  if (sample.stress[0].rows() > 0) {
+    const ProbeStresses stress = at_stress_points(run, lattice, run.prepared.models[number], sample.stress);
+    if (const Eigen::Index probes = stress_probes(run.prepared); probes > 0)
+      scalars.merge(stress_measures(e.probes, stress.topRows(probes)));
+    if (reference_at_rest(run, lattice, label)) add_stress_errors(run, key, kinematics_of_models(e), stress);
+    if (lattice == 0) add_to_picture(run, stress);
+  }
   if (!e.models[number].in_motion) return;
   add_motion(run, lattice, label, sample.field, sample.motion);
   add_motion_rows(run, blank_row(run, key, kinematics_of_models(e)), run.part.histories.back());
@@ -129,9 +149,9 @@ void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
     run.part.runs.push_back(model_run(run, lattice, number, sample));
     if (sample.stability) add_stable_load(run, blank_row(run, key, kind), sample.stability->load_reached);
     if (!sample.state.ok) continue;
-    if (fields.empty()) add_first_sample(run, lattice, number, sample);
-    fields.push_back(sample.field.displacement);
     scalars.push_back(sample.scalars);
+    if (fields.empty()) add_first_sample(run, lattice, number, sample, scalars.front());
+    fields.push_back(sample.field.displacement);
   }
   if (fields.empty()) return;
   add_rows(run, lattice, label, kind, fields, scalars);
@@ -141,7 +161,8 @@ void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
   const NodalVectors& u = samples.front().state.displacement;
   if (!run.vtu.folder.empty())
     write_cells(run.vtu.folder / (file_stem(key) + "_cells.vtu"),
-                cells_of(run.prepared.lattices[lattice], run.prepared.models[number]), u, run.notes(key));
+                cells_of(run.prepared.lattices[lattice], run.prepared.models[number]), u, run.notes(key),
+                samples.front().stress);
   run.cut_states.push_back({lattice, number, u, samples.front().field.displacement, scalars.front()});
   add_splits_of_cut_cells(run, lattice, number, fields, scalars);
 }
@@ -177,15 +198,6 @@ void run_fracture_model(PartRun& run, std::size_t lattice, std::size_t number) {
   run.part.cracks.push_back(std::move(samples.cracks));
 }
 
-/// The reference's stress on its picture, of the true surface where there is one: the last that was added.
-void add_stress(PartRun& run) {
-  const auto& stress = run.grids.elements.front().grids.back().stress;
-  const Eigen::Index first = first_pictured_stress(run.prepared);
-  Picture& p = run.part.pictures.back();
-  if (stress.rows() - first == static_cast<Eigen::Index>(p.rest.size() / 3))
-    p.von_mises = von_mises(stress.bottomRows(stress.rows() - first));
-}
-
 /// The finite elements' results at the nodes of one lattice.
 void add_fem(PartRun& run, std::size_t lattice) {
   const Lattice& here = run.prepared.lattices[lattice];
@@ -193,7 +205,7 @@ void add_fem(PartRun& run, std::size_t lattice) {
     Field field = sampled_field(here, run.grids.elements.front().grids.back());
     field.displacement = run.reference[lattice]->field.displacement;
     save(run, lattice, "fem", field);
-    if (lattice == 0) add_stress(run);
+    if (lattice == 0) add_to_picture(run, at_stress_points(run, lattice, run.grids.elements.front().grids.back()));
   }
   if (lattice >= run.grids.peers.size()) return;
   for (const fem::Solution& s : run.grids.peers[lattice]) {
@@ -206,6 +218,7 @@ void add_fem(PartRun& run, std::size_t lattice) {
     if (wanted("frequency", run.experiment().measures) && !run.experiment().body.is_voxels())
       scalars.merge(lowest_frequencies(run.prepared, here, s.grid.element, run.material));
     add_rows(run, lattice, name, run.part.runs.back().kinematics, {at_nodes(here, s.displacement)}, {scalars});
+    add_stress_errors(run, run.key(name, lattice), run.part.runs.back().kinematics, at_stress_points(run, lattice, s));
     save(run, lattice, name, sampled_field(here, s));
   }
 }
@@ -222,6 +235,7 @@ Part run_part(const PreparedCase& whole, std::size_t setting, const VtuOutput& v
               .grids = {},
               .reference = {},
               .voxels = {},
+              .stress = {},
               .cut_states = {},
               .in_time = {}};
   if (!vtu.folder.empty()) std::filesystem::create_directories(vtu.folder);

@@ -8,6 +8,7 @@
 
 #include "comparisons/judge/reference_value.h"
 #include "comparisons/judge/rigid_motion.h"
+#include "comparisons/judge/stress_error.h"
 #include "comparisons/models/motion_reference.h"
 #include "comparisons/prepare/prepared_case.h"
 #include "comparisons/reference/reference_grids.h"
@@ -36,6 +37,7 @@ struct PartRun {
   ReferenceGrids grids;                             ///< no elements: no reference
   std::vector<std::optional<Reference>> reference;  ///< one per lattice; empty: no reference
   std::vector<std::optional<VoxelLimit>> voxels;    ///< one per lattice of a body of voxels
+  std::optional<StressLimit> stress;                ///< at stress_points(), where the case compares them
   std::vector<CutState> cut_states;
   std::optional<MotionReference> in_time;  ///< finite elements in time, where there are
 

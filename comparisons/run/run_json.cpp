@@ -32,7 +32,8 @@ json json_of(const ModelSample& s) {
           {"line", s.line},
           {"history", s.motion.history},
           {"frames", s.motion.frames},
-          {"stability", s.stability}};
+          {"stability", s.stability},
+          {"stress", s.stress}};
 }
 
 ModelSample sample_from(const json& j, const Lattice& lattice) {
@@ -58,6 +59,7 @@ ModelSample sample_from(const json& j, const Lattice& lattice) {
   j.at("history").get_to(s.motion.history);
   j.at("frames").get_to(s.motion.frames);
   j.at("stability").get_to(s.stability);
+  j.at("stress").get_to(s.stress);
   return s;
 }
 

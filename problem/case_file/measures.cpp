@@ -88,6 +88,10 @@ std::vector<std::string> stress_rows(const Experiment& experiment) {
   return rows;
 }
 
+std::vector<std::string> stress_error_rows(const Experiment&) {
+  return {"stress_error.von_mises", "stress_error.hydrostatic", "stress_error.principal"};
+}
+
 /// What is measured of a region, with its unit.
 const std::vector<std::pair<std::string, std::string>> of_region = {
     {".volume_change", "1"}, {".mean_stress", "Pa"}, {".pressure", "Pa"}, {".displacement", "m"}, {".energy", "J"}};
@@ -214,7 +218,13 @@ const std::vector<Measure>& measure_table() {
     {"measured", value, {{"measured", "1"}}, "measured.NAME, |E|/u_val of a value of [[measured]]; always judged where there are any",
      "", "", measured_rows},
     {"probe", value, {{"displacement", "m"}}, "displacement.PROBE.x|y|z|magnitude [m]", "", "", probe_rows},
-    {"stress", value, {{"stress", "Pa"}}, "stress.PROBE.xx|yy|zz|xy|yz|xz [Pa], finite elements only", "", "", stress_rows},
+    {"stress", value, {{"stress", "Pa"}}, "stress.PROBE.xx|yy|zz|xy|yz|xz [Pa], finite elements and `hybmss_avg` at small strain", "", "", stress_rows},
+    {"stress_error", distance, {{"stress_error", "1"}},
+     "stress_error.von_mises|hydrostatic|principal of `hybmss_avg` and finite elements, small strain: relative L2 difference to FEM over the body",
+     "stress error", "of von Mises’, the mean normal and the largest principal stress, recovered at nodes: |σ − σ_fem| in the L2 norm over the body, divided by |σ_fem|",
+     stress_error_rows},
+    {"stress_peak", value, {{"stress_peak", "Pa"}}, "largest von Mises stress of the same [Pa], where the reference's is not at a singular edge",
+     "largest von Mises stress", "where that of FEM has a limit: not at singular edges and corners"},
     {"region", value, {{"region", "1"}}, "region.REGION.volume_change, .mean_stress.xx|yy|zz|xy|yz|xz and .pressure [Pa], .displacement.x|y|z|magnitude [m] in the mean, .energy [J] of a [[region]]",
      "", "", region_rows},
     {"interface", value, {{"interface", "N"}}, "interface.REGION.OTHER.force.x|y|z|magnitude, force on a region by another, named earlier, or by the `body`'s own material [N]",

@@ -21,7 +21,7 @@ const viridisCss = value => cssOf(colorAt(viridisStops, value));
 const colourings = {
   displacement: {text: 'displacement', symbol: '|u|', stops: viridisStops, values: shape => shape.size},
   difference: {text: 'difference to FEM', symbol: '|u − u_fem|', stops: viridisStops, values: shape => shape.difference},
-  von_mises: {text: 'von Mises stress of the reference', symbol: 'σ', unitOf: stressUnit, stops: viridisStops, values: shape => shape.von_mises},
+  von_mises: {text: 'von Mises stress', symbol: 'σ', unitOf: stressUnit, stops: viridisStops, values: shape => shape.von_mises},
   volume_change: {text: 'volume change', symbol: 'V′/V − 1', stops: coolWarmStops, signed: true, values: shape => shape.volume_change},
 };
 
