@@ -121,6 +121,8 @@ grep -qF '"the body is 1e-06 x 1e-06 x 3e-06 m' "$work/out/results.json" || fail
 case_file trefoil.stl "scale = 1e-4" -9e-5 9e-5 800 "elements = []
 edge_m = 3e-5" >"$work/small.toml"
 of_size small "m; is it so small?"
+case_file noisy_sphere.stl "scale = 0.001" -6e-4 6e-4 100 "edge_m = 0.0015" >"$work/round.toml"
+[ -z "$fem" ] || of_size round "remeshing with edges of 0.0015 m changes the volume by"  # not in the file's millimetres
 
 # A case by `new`: of an upright body its ends; of one that lies askew no corners of its box, but ends across its own length.
 cat >"$work/askew.geo" <<GEO
