@@ -203,9 +203,10 @@ def runs(record):
 
 
 def is_right(record):
-    """Whether a broken file was refused for what was done to it, and any other, or one that can be mended, runs."""
+    """Whether a broken file was refused for what was done to it; and any other, or one that can be mended, runs, or has
+    struts that are thinner than a cell, which is said."""
     reason = BREAKS[record["broken"]][1] if record["broken"] else ""
-    return record["status"] == 2 and reason in record["said"] if reason else runs(record)
+    return record["status"] == 2 and (reason or "share no face") in record["said"] or not reason and runs(record)
 
 
 def converges(record):
@@ -250,7 +251,7 @@ def report(records, folder, program, pictures):
         if not is_right(r) or r["status"] == 0 and not converges(r) or "not_judged" in r:
             apart = r.get("diverging", {})
             says = [r["said"], *r.get("failed", []), r.get("not_judged", ""),
-                    *[f"at nu = {', '.join(apart)} {next(iter(apart.values()))}"][:len(apart)]]
+                    *[f"at nu = {', '.join(apart)} {note}" for note in list(apart.values())[:1]]]
             print(f"  {name} ({r['form']}{', ' * bool(r['broken'])}{r['broken']}): " + "; ".join(s for s in says if s))
     worst = sorted((n for n, r in records.items() if r["status"] == 0),
                    key=lambda n: -max(e[-1] for e in records[n]["errors"].values() if e))[:10]
