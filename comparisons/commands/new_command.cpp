@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +12,7 @@
 
 #include "comparisons/sweep/status.h"
 #include "meshes/mesher/mesher.h"
+#include "meshes/patches/rule_region.h"
 #include "meshes/surface/surface.h"
 #include "meshes/volume.h"
 #include "problem/case_file/experiment.h"
@@ -31,15 +33,62 @@ struct Measured {
   double thick = 0;   ///< 2 V / A [m]: that of a sheet, two thirds of a ball's radius
   int longest = 0;    ///< axis
   std::vector<std::string> notes;
+  Vec3 along;                     ///< from the end that is held to the one that is pulled
+  double length = 0;              ///< along that [m]
+  std::array<PatchRule, 2> ends;  ///< which are held and pulled
 };
+
+double area_of(const PatchRule& rule, const Surface& surface) {
+  double sum = 0;
+  for (const FacetPart& part : parts_of(rule, surface)) sum += part.area.norm();
+  return sum;
+}
+
+/// The direction in which the nodes lie farthest from their middle.
+Vec3 own_axis(const Surface& surface) {
+  Vec3 mean = Vec3::Zero();
+  for (const Vec3& p : surface.points) mean += p / static_cast<double>(surface.points.size());
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const Vec3& p : surface.points) spread += (p - mean) * (p - mean).transpose();
+  const Vec3 axis = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(2);
+  return axis.sum() < 0 ? Vec3(-axis) : axis;
+}
+
+/// The ends along an axis of the box, if each has half the area of a mean section or more.  A body that lies askew has
+/// a corner there: held at it, it turns about a point.  Then what is beyond planes across the body's own longest
+/// direction, each as deep as it takes for a section's area.
+void find_ends(const Surface& surface, Measured& m) {
+  constexpr double enough = 0.5, deepest = 0.3;
+  m.along = Vec3::Unit(m.longest);
+  m.length = m.size[m.longest];
+  for (int end = 0; end < 2; ++end) {
+    m.ends[end].side = static_cast<BodySide>(2 * m.longest + end);
+    m.ends[end].name = names_of(BodySide{})[2 * m.longest + end];
+  }
+  const auto suffices = [&](const PatchRule& end) { return area_of(end, surface) >= enough * m.volume / m.length; };
+  if (std::all_of(m.ends.begin(), m.ends.end(), suffices)) return;
+  m.along = own_axis(surface);
+  const auto [low, high] =
+      std::ranges::minmax_element(surface.points, {}, [&](const Vec3& p) { return m.along.dot(p); });
+  m.length = m.along.dot(*high - *low);
+  for (int end = 0; end < 2; ++end)
+    for (double depth = 0.05; depth < deepest; depth += 0.05) {
+      const Vec3 out = end ? m.along : Vec3(-m.along);
+      m.ends[end].side.reset();
+      m.ends[end].name = end ? "high" : "low";
+      m.ends[end].beyond = PatchRule::Beyond{(end ? *high : *low) - depth * m.length * out, out};
+      if (area_of(m.ends[end], surface) >= m.volume / m.length) break;
+    }
+}
 
 Measured measured(const MeshRequest& request) {
   const MeshedBody meshed = mesh_body(request);
   const Surface outside = outside_of(meshed.mesh);
   const Box box = bounding_box(outside);
-  Measured m{box.low, box.high - box.low, volume(meshed.mesh, meshed.mesh.nodes), 0, 0, meshed.notes};
+  Measured m{box.low, box.high - box.low, volume(meshed.mesh, meshed.mesh.nodes), 0, 0, meshed.notes, {}, 0, {}};
   m.thick = 2 * m.volume / area(outside);
   m.size.maxCoeff(&m.longest);
+  find_ends(outside, m);
   return m;
 }
 
@@ -76,23 +125,25 @@ std::string patches_of(const Measured& m) {
   const auto names = names_of(BodySide{});
   std::string text;
   for (int side = 0; side < 6; ++side) {
-    const char* before = side / 2 == m.longest ? "" : "# ";
+    const char* before = m.ends[0].side && side / 2 == m.longest ? "" : "# ";
     text += fmt::format("{0}[[patch]]\n{0}name = \"{1}\"\n{0}side = \"{1}\"\n", before, names[side]);
   }
+  for (const PatchRule& end : m.ends)
+    if (end.beyond)
+      text += fmt::format("[[patch]]\nname = \"{}\"\nbeyond = {{ point_m = {}, normal = {} }}\n", end.name,
+                          list(end.beyond->point), list(end.beyond->normal));
   return text + "# A part of a side: box_m, beyond, facing, near (docs/keys.md).\n";
 }
 
-/// Held at its lower end along the longest axis and pulled at the other, to 1 % on average.
+/// Held at its lower end along its length and pulled at the other, to 1 % on average.
 std::string loads_of(const Measured& m, const IsotropicMaterial& material) {
-  const auto names = names_of(BodySide{});
-  const double section = m.volume / m.size[m.longest];
-  const Vec3 force = strain * material.youngs_modulus * section * Vec3::Unit(m.longest);
+  const Vec3 force = strain * material.youngs_modulus * m.volume / m.length * m.along;
   return fmt::format(
       "[[load]]\non = \"{}\"\ndisplacement_m = [0, 0, 0]\n\n"
       "[[load]]\non = \"{}\"\nforce_N = {}  # {:g} E V / length: a strain of 1 % on average\n# [[load]]\n# "
       "gravity_m_s2 = [0, 0, "
       "-9.81]\n",
-      names[2 * m.longest], names[2 * m.longest + 1], list(force), strain);
+      m.ends[0].name, m.ends[1].name, list(force), strain);
 }
 
 std::string case_of(const Measured& m, const MeshRequest& request, const std::string& geo,

@@ -133,8 +133,9 @@ void raise_to_usual(std::map<std::string, ReferenceValue>& limits) {
       size[without_component(measure)] = std::hypot(size[without_component(measure)], limit.value);
   std::map<std::string, std::vector<double>> relative;
   for (const auto& [measure, limit] : limits)
-    if (limit.sequence != Sequence::equal && !measure.ends_with(".magnitude") && size[without_component(measure)] > 0)
-      relative[kind_of(measure)].push_back(limit.uncertainty / size[without_component(measure)]);
+    if (const double whole = size[without_component(measure)];
+        limit.sequence != Sequence::equal && !measure.ends_with(".magnitude") && limit.uncertainty < whole)
+      relative[kind_of(measure)].push_back(limit.uncertainty / whole);
   for (auto& [measure, limit] : limits)
     if (limit.sequence != Sequence::equal)
       limit.uncertainty =

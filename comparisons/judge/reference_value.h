@@ -79,7 +79,8 @@ ReferenceValue extrapolate_two(double f1, double f2);
 
 /// Three grids may agree by accident: raises the uncertainty of every value to the median of its kind ("force",
 /// "stress", ...), both as fractions of the magnitude of the vector or tensor that the value is a component of.  Values
-/// that are equal on all grids neither count nor change.  Magnitudes, which differences of grids may carry below 0, are
+/// that are equal on all grids neither count nor change; uncertainties larger than that magnitude, as of a held patch's
+/// mean displacement, do not count.  Magnitudes, which differences of grids may carry below 0, are
 /// 0 there.
 void raise_to_usual(std::map<std::string, ReferenceValue>& limits);
 

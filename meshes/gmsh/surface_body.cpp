@@ -137,7 +137,7 @@ MeshAt surface_at(const MeshRequest& r, FileSurface& source, double shorter = 1)
     try {
       even = remesh(surface, side, (times > 1 ? slack * most_change * times * times : most_change) - source.lost());
     } catch (const std::runtime_error& e) {
-      refuse(r.file, e.what());
+      refuse(r.file, fmt::format("remeshing with edges of {:.3g} m {}", shorter * edge, e.what()));
     }
     const std::string note =
         fmt::format("{} facets remeshed to {} of edge {:.3g} m; the volume changed by {:.2g} %", source.facets(),

@@ -171,8 +171,7 @@ Surface thinned(const Surface& surface, double edge) {
 Surface remesh(const Surface& surface, double edge, double most_change) {
   if (!(edge > 0)) throw std::runtime_error("remesh: edge must be positive");
   const double facets = facets_of(surface, edge);
-  if (!(facets < 4e6))
-    throw std::runtime_error(fmt::format("edges of {:.3g} would make {:.2g} facets (allowed: 4e6)", edge, facets));
+  if (!(facets < 4e6)) throw std::runtime_error(fmt::format("would make {:.2g} facets (allowed: 4e6)", facets));
 
   SurfaceMesh mesh = to_cgal(surface);
   EdgeMarks sharp = mesh.add_property_map<SurfaceMesh::Edge_index, bool>("e:sharp", false).first;
@@ -184,19 +183,15 @@ Surface remesh(const Surface& surface, double edge, double most_change) {
       mesh.faces(), edge, mesh,
       CGAL::parameters::number_of_iterations(5).edge_is_constrained_map(sharp).vertex_is_constrained_map(bends));
 
-  if (!CGAL::is_closed(mesh) || !CGAL::is_triangle_mesh(mesh))
-    throw std::runtime_error("remeshing left the surface open");
+  if (!CGAL::is_closed(mesh) || !CGAL::is_triangle_mesh(mesh)) throw std::runtime_error("leaves the surface open");
   const double before = volume(surface);
   const auto check_volume = [&](const Surface& result) {
     const double change = std::abs(volume(result) - before) / before;
-    if (!(change < most_change))
-      throw std::runtime_error(
-          fmt::format("remeshing with edges of {:.3g} changes the volume by {:.2g} %", edge, 100 * change));
+    if (!(change < most_change)) throw std::runtime_error(fmt::format("changes the volume by {:.2g} %", 100 * change));
   };
   check_volume(from_cgal(mesh));  // in vain to look for cuts
   std::optional<Surface> result = without_cuts(mesh);
-  if (!result)
-    throw std::runtime_error(fmt::format("remeshing with edges of {:.3g} makes facets that cut each other", edge));
+  if (!result) throw std::runtime_error("makes facets that cut each other");
   check_volume(*result);
   Surface even = balanced(*result, surface);
   return intersecting_facets(even, 1).empty() ? even : std::move(*result);

@@ -33,9 +33,9 @@ Surface thinned(const Surface& surface, double edge);
 /// The same body (surface as of check_surface) with triangles of about this edge [m].  Edges where facets meet at more
 /// than 40 degrees are kept as lines (unless lines of less than eight edges in all); elsewhere the new facets lie as
 /// much inside of the old surface as outside of it (balanced.h).
-/// @throws std::runtime_error if that fails: the edge is too long for the body (its volume changes by more than
-/// `most_change`, or
-///         facets cut each other and cannot be repaired), or too short (more than 4 million facets).
+/// @throws std::runtime_error, what it does, if that fails: the edge is too long for the body (its volume changes by
+///         more than `most_change`, or facets cut each other and cannot be repaired), or too short (more than 4 million
+///         facets).
 Surface remesh(const Surface& surface, double edge, double most_change = 0.01);
 
 }  // namespace springproof

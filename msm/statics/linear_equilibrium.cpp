@@ -16,7 +16,9 @@ namespace springproof {
 namespace {
 
 constexpr long lattice_cholesky_limit = 1000;  // free unknowns; above it multigrid is faster
-constexpr long judge_limit = 20000;            // up to it a factorisation is tried where the iteration fails
+// Up to it a factorisation is tried where the iteration fails; above it, of the mixed form, cycles in displacements:
+// slow near nu = 1/2, but thin shells of two cells across, in which the mixed cycle stands still, take some 700.
+constexpr long judge_limit = 20000;
 
 NodalVectors nodal(const Eigen::VectorXd& v) { return Eigen::Map<const NodalVectors>(v.data(), v.size() / 3, 3); }
 
@@ -111,7 +113,9 @@ Equilibrium solve_linear(const MassSpringModel& model, const BoundaryConditions&
     else
       solve_primal(problem, solver == LinearSolver::cholesky, result);
     const bool iterated = solver != LinearSolver::cholesky && options.solver == LinearSolver::automatic;
-    if (!result.ok && iterated && result.unknowns <= judge_limit) solve_primal(problem, true, result);
+    const bool factor = result.unknowns <= judge_limit;
+    if (!result.ok && iterated && (factor || solver == LinearSolver::mixed_multigrid))
+      solve_primal(problem, factor, result);
   } catch (const std::runtime_error& e) {
     result.message = e.what();
   }

@@ -121,6 +121,21 @@ grep -qF '"the body is 1e-06 x 1e-06 x 3e-06 m' "$work/out/results.json" || fail
 case_file trefoil.stl "scale = 1e-4" -9e-5 9e-5 800 "elements = []
 edge_m = 3e-5" >"$work/small.toml"
 of_size small "m; is it so small?"
+case_file noisy_sphere.stl "scale = 0.001" -6e-4 6e-4 100 "edge_m = 0.0015" >"$work/round.toml"
+[ -z "$fem" ] || of_size round "remeshing with edges of 0.0015 m changes the volume by"  # not in the file's millimetres
+
+# A case by `new`: of an upright body its ends; of one that lies askew no corners of its box, but ends across its own length.
+cat >"$work/askew.geo" <<GEO
+SetFactory("OpenCASCADE");
+Box(1) = {0, 0, 0, 1, 1, 3};
+Rotate {{1, 2, 0}, {0, 0, 0}, 0.7} { Volume{1}; }
+Save "$work/askew.step";
+GEO
+"$program" new "$work/askew.geo" --size 1 1 1 >/dev/null 2>&1
+"$program" new "$work/form.step" --scale 1000 | grep -q '^side = "top"' || fail "new: no sides of an upright body"
+"$program" new "$work/askew.step" --scale 1000 >"$work/askew.toml"
+awk '/^name = "high"/ { getline; gsub(/.*normal = |[][{},]/, ""); print }' "$work/askew.toml" |
+  awk '{ ok = 0.5762 * $1 - 0.2881 * $2 + 0.7648 * $3 > 0.99 } END { exit !ok }' || fail "new: ends of a body that lies askew" "$work/askew.toml"
 
 # Half of a script's cells are in no physical volume: they are left out, which is said.
 cat >"$work/half.geo" <<'GEO'

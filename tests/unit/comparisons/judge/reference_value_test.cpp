@@ -176,8 +176,10 @@ TEST(ReferenceValue, NoneIsSurerThanUsualOfItsKind) {
       {"displacement.B.x", {3, 0.04, 2, ""}},           {"displacement.B.y", {4, 0.05, 2, ""}},
       {"displacement.C.x", {0.2, 1e-6, 2, ""}},         {"displacement.C.y", {0, 1e-9, {}, "", Sequence::equal}},
       {"displacement.C.magnitude", {0.2, 1e-6, 2, ""}}, {"force.top.x", {7, 1e-5, 2, ""}},
-      {"force.base.magnitude", {-0.109, 0.465, 2, ""}}};
+      {"force.base.magnitude", {-0.109, 0.465, 2, ""}}, {"mean_displacement.held.x", {1e-19, 4e-5, 2, ""}},
+      {"mean_displacement.held.y", {0, 4e-5, 2, ""}},   {"mean_displacement.free.x", {2, 0.01, 2, ""}}};
   raise_to_usual(limits);
+  EXPECT_NEAR(limits.at("mean_displacement.free.x").uncertainty, 0.01, 1e-15) << "held: smaller than its uncertainty";
   EXPECT_NEAR(limits.at("displacement.C.x").uncertainty, 0.01 * 0.2, 1e-15);
   EXPECT_NEAR(limits.at("displacement.C.magnitude").uncertainty, 0.01 * 0.2, 1e-15);
   EXPECT_EQ(limits.at("displacement.C.y").uncertainty, 1e-9);  // equal on all grids: known, not lucky
