@@ -65,6 +65,7 @@ Solution solve_one(const Request& request, const Discretisation& grid, Method me
       {{"case", request.name}, {"element", grid.element}, {"law", request.law}},
       {{"poisson_ratio", request.material.poisson_ratio}, {"youngs_modulus_Pa", request.material.youngs_modulus}},
       request.vtu_single};
+  if (grid.times_cells > 1) problem.coarse = refined_locally(problem, grid.times_cells);
   Solution solution = solve_grid(problem);
   solution.grid = grid;
   if (!request.cost || !solution.ok) return solution;

@@ -16,6 +16,7 @@
 #include "fem_reference/system/boundary_conditions.h"
 #include "fem_reference/system/elastic_system.h"
 #include "fem_reference/system/interfaces.h"
+#include "fem_reference/system/local_refinement.h"
 #include "fem_reference/system/materials.h"
 #include "fem_reference/system/sample.h"
 #include "fem_reference/system/solution_file.h"
@@ -227,7 +228,34 @@ void solve_into(Solution& solution, const GridProblem& problem, const Body3& bod
   solution.min_jacobian = volume.min_jacobian;
 }
 
+std::unique_ptr<dealii::DoFHandler<3>> displacements_on(const Body3& body, int degree) {
+  auto dof_handler = std::make_unique<dealii::DoFHandler<3>>(body.triangulation);
+  dof_handler->distribute_dofs(*displacement_element(body, degree));
+  return dof_handler;
+}
+
 }  // namespace
+
+Mesh refined_locally(GridProblem problem, double times_cells) {
+  dealii::MultithreadInfo::set_thread_limit(1);
+  const auto enough = std::size_t(times_cells * double(problem.coarse.tetrahedra.size()));
+  if (problem.degree != 2 || process_count() > 1) return problem.coarse;
+  problem.law = "linear";
+  problem.tolerance = 1e-3;
+  while (problem.coarse.tetrahedra.size() < enough) {
+    progress::detail(fmt::format("{} tetrahedra, where their error is", problem.coarse.tetrahedra.size()));
+    const auto body = triangulate(problem.coarse, 0, problem.place);
+    const auto dof_handler = displacements_on(*body, problem.degree);
+    DofVector u = zero_vector(*dof_handler);
+    Solution coarse;
+    solve_linear(problem, Discrete(problem, *body, *dof_handler), u, coarse);
+    u.update_ghost_values();
+    Mesh cut = cut_where_errors_are_largest(problem.coarse, *body, *dof_handler, u, enough);
+    if (cut.tetrahedra.size() == problem.coarse.tetrahedra.size()) break;
+    problem.coarse = std::move(cut);
+  }
+  return problem.coarse;
+}
 
 Solution solve_grid(const GridProblem& problem) {
   dealii::MultithreadInfo::set_thread_limit(1);
@@ -242,8 +270,8 @@ Solution solve_grid(const GridProblem& problem) {
     throw InputError(fmt::format("elements of degree {}: only 1 and 2 are there", problem.degree));
   const auto body = triangulate(problem.coarse, problem.refinements, problem.place);
   check_patches(*body, problem.loads);
-  dealii::DoFHandler<3> dof_handler(body->triangulation);
-  dof_handler.distribute_dofs(*displacement_element(*body, problem.degree));
+  const auto owned = displacements_on(*body, problem.degree);
+  dealii::DoFHandler<3>& dof_handler = *owned;
   if (matrix_free(problem, *body)) dof_handler.distribute_mg_dofs();
 
   Solution solution;

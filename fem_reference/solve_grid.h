@@ -14,6 +14,10 @@ namespace springproof::fem {
 /// it.
 Solution solve_grid(const GridProblem& problem);
 
+/// The mesh of quadratic tetrahedra with so many times as many, cut where errors at small strain are largest; that of
+/// other elements, or of a body in parts, as it is.
+Mesh refined_locally(GridProblem problem, double times_cells);
+
 /// Grades coordinates in the box [low, high] towards its faces, within half the shortest side r on every axis: the
 /// distance d < r to a face becomes r (d/r)^exponent.  The faces are fixed, and the rest of a slender body stays
 /// uniform.

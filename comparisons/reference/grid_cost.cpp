@@ -40,7 +40,7 @@ RunCost grid_cost(double unknowns, bool assembled, double factor) {
 double unknowns_of(const fem::Request& request, const fem::Discretisation& grid) {
   const int degree = degree_of(grid.element);
   if (grid.mesh < 0) return unknowns(grid.cells, degree);
-  return std::pow(8, grid.refinements) * unknowns(*request.meshes.at(grid.mesh), degree);
+  return std::pow(8, grid.refinements) * grid.times_cells * unknowns(*request.meshes.at(grid.mesh), degree);
 }
 
 RunCost cost_of(const fem::Request& request) {

@@ -123,9 +123,11 @@ ReferenceGrids solve_body_grids(const PreparedCase& prepared, const IsotropicMat
   ReferenceGrids out;
   const Experiment& e = prepared.experiment;
   std::vector<fem::Discretisation> grids = grids_on(prepared.body.tetrahedra, e.reference.elements);
-  for (fem::Discretisation& grid : grids)
+  for (fem::Discretisation& grid : grids) {
+    grid.times_cells = e.reference.refine;
     if (grid.mesh + 1 == static_cast<int>(prepared.body.tetrahedra.size()))
       grid.vtu = reference_file(vtu, grid.element, prepared.experiment.setting_of(material));
+  }
   std::vector<fem::Solution> solutions =
       solve_tetrahedra(prepared, material, grids, prepared.body.tetrahedra, keeper, vtu.single, coarsest);
   for (fem::Solution& s : solutions) s.grid.cells[0] = prepared.body.uncut[s.grid.mesh];

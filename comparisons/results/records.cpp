@@ -80,6 +80,7 @@ Json json_of(const CaseResult& result) {
         {"elements", e.reference.elements},
         {"grading", e.reference.grading},
         {"edge", e.reference.edge},
+        {"refine", e.reference.refine},
         {"smooth", e.reference.smooth}}},
       {"exact", e.exact},
       {"text", e.text}};

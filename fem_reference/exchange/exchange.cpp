@@ -29,7 +29,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Relaxation, branches)
 
 namespace fem {
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Discretisation, cells, element, grading, mesh, refinements, steps, vtu)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Discretisation, cells, element, grading, mesh, refinements, times_cells, steps, vtu)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MotionRequest, duration, damping, course, released, velocity, spin, viscosity,
                                    relaxation, energy_momentum)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RegionMeans, volume_change, displacement, stress, energy)

@@ -137,10 +137,12 @@ ReferenceChoice read_reference(const TomlValue& value, bool voxels) {
   const TomlTable table(value, keys_of("reference"));
   ReferenceChoice reference;
   if (voxels) reference.elements = {"p2"};
-  if (const auto edge = table.find("edge_m")) {
-    if (!voxels) refuse(*edge, "is for bodies of voxels", "cells, for bodies of hexahedra");
-    reference.edge = as_number(*edge, positive_number);
-  }
+  for (const char* key : {"edge_m", "refine"})
+    if (const auto given = table.find(key); given && !voxels)
+      refuse(*given, "is for bodies of voxels", "cells and grading, for bodies of hexahedra");
+  if (const auto edge = table.find("edge_m")) reference.edge = as_number(*edge, positive_number);
+  if (const auto times = table.find("refine"))
+    reference.refine = as_number(*times, {"a number from 1 to 10", 1, 10, true, true});
   for (const char* key : {"cells", "grading"})
     if (const auto given = table.find(key); given && voxels)
       refuse(*given, "is for bodies of hexahedra", "edge_m, for bodies of voxels");

@@ -53,6 +53,7 @@ struct ReferenceChoice {
       "q2"};             ///< each run on the three grids; the first is the reference; none: no reference
   double grading = 1.5;  ///< exponent that draws elements towards the faces of the block; 1 = uniform
   double edge = 0;       ///< [m] edge length of the tetrahedra for a body of voxels, finest of three meshes; 0 = chosen
+  double refine = 1;     ///< so many times as many tetrahedra, cut where their error is largest
   bool in_time = false;  ///< the motion of [dynamics] is integrated by finite elements too
   bool energy_momentum = false;  ///< in time by energy-momentum steps; false: by the midpoint rule
   bool smooth = false;           ///< the exact solution is smooth: the elements' theoretical order may be assumed

@@ -1,0 +1,19 @@
+// Tetrahedra that are cut where the error of a solution is largest.
+#pragma once
+
+#include <deal.II/dofs/dof_handler.h>
+
+#include "fem_reference/system/elastic_system.h"
+#include "meshes/mesh.h"
+
+namespace springproof::fem {
+
+/// The mesh with the longest edges of those cells bisected that hold most of the estimated error, until there are
+/// `most` cells: a cell's error is the distance of its strain's deviator from the mean of the cells of its material at
+/// each corner (Zienkiewicz and Zhu 1987), and cut are the fewest cells that have 0.6 of its square (Doerfler 1996).
+/// @param mesh that the body is of
+/// @param displacement of second order, with current ghost values
+Mesh cut_where_errors_are_largest(const Mesh& mesh, const Body3& body, const dealii::DoFHandler<3>& dof_handler,
+                                  const DofVector& displacement, std::size_t most);
+
+}  // namespace springproof::fem
