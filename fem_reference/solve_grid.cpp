@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include <cmath>
 #include <ctime>
+#include <stdexcept>
 
 #include "fem_reference/elements/cell_equations.h"
 #include "fem_reference/grid/processes.h"
@@ -20,6 +22,7 @@
 #include "fem_reference/system/materials.h"
 #include "fem_reference/system/sample.h"
 #include "fem_reference/system/solution_file.h"
+#include "meshes/volume.h"
 #include "problem/system/input_error.h"
 #include "problem/system/progress.h"
 
@@ -237,22 +240,27 @@ std::unique_ptr<dealii::DoFHandler<3>> displacements_on(const Body3& body, int d
 }  // namespace
 
 Mesh refined_locally(GridProblem problem, double times_cells) {
+  constexpr double shortest = 1. / 64;  // edge that is left, over the mean one
+  if (problem.degree != 2 || problem.coarse.tetrahedra.empty()) return problem.coarse;
+  if (process_count() > 1) throw InputError("tetrahedra are cut by one process");
   dealii::MultithreadInfo::set_thread_limit(1);
-  const auto enough = std::size_t(times_cells * double(problem.coarse.tetrahedra.size()));
-  if (problem.degree != 2 || process_count() > 1) return problem.coarse;
+  const double cells = double(problem.coarse.tetrahedra.size());
+  const double edge = std::cbrt(6 * std::sqrt(2.0) * volume(problem.coarse, problem.coarse.nodes) / cells);
   problem.law = "linear";
   problem.tolerance = 1e-3;
-  while (problem.coarse.tetrahedra.size() < enough) {
-    progress::detail(fmt::format("{} tetrahedra, where their error is", problem.coarse.tetrahedra.size()));
+  for (std::size_t before = 0; before < problem.coarse.tetrahedra.size();) {
+    before = problem.coarse.tetrahedra.size();
+    if (double(before) >= times_cells * cells) break;
+    progress::detail(fmt::format("{} tetrahedra, where their error is", before));
     const auto body = triangulate(problem.coarse, 0, problem.place);
     const auto dof_handler = displacements_on(*body, problem.degree);
     DofVector u = zero_vector(*dof_handler);
     Solution coarse;
-    solve_linear(problem, Discrete(problem, *body, *dof_handler), u, coarse);
+    if (!solve_linear(problem, Discrete(problem, *body, *dof_handler), u, coarse).converged)
+      throw std::runtime_error("where tetrahedra are to be cut: " + coarse.message);
     u.update_ghost_values();
-    Mesh cut = cut_where_errors_are_largest(problem.coarse, *body, *dof_handler, u, enough);
-    if (cut.tetrahedra.size() == problem.coarse.tetrahedra.size()) break;
-    problem.coarse = std::move(cut);
+    problem.coarse = cut_where_errors_are_largest(problem.coarse, *body, *dof_handler, u,
+                                                  std::size_t(times_cells * cells), shortest * edge);
   }
   return problem.coarse;
 }

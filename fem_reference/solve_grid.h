@@ -14,8 +14,9 @@ namespace springproof::fem {
 /// it.
 Solution solve_grid(const GridProblem& problem);
 
-/// The mesh of quadratic tetrahedra with so many times as many, cut where errors at small strain are largest; that of
-/// other elements, or of a body in parts, as it is.
+/// The mesh of quadratic tetrahedra with so many times as many, or fewer if edges would go below a 64th of their mean,
+/// cut where errors at small strain are largest; that of other elements as it is.
+/// @throws std::runtime_error if the linear solver fails, InputError on several processes
 Mesh refined_locally(GridProblem problem, double times_cells);
 
 /// Grades coordinates in the box [low, high] towards its faces, within half the shortest side r on every axis: the

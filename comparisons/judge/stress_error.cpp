@@ -43,7 +43,7 @@ NodalVectors invariants(const ProbeStresses& stress) {
 }
 
 bool StressLimit::peak_is_singular() const {
-  return peak.sequence == Sequence::not_converging && peak.uncertainty > known_peak * peak.value;
+  return peak_grows && peak.sequence == Sequence::not_converging && peak.uncertainty > known_peak * peak.value;
 }
 
 StressLimit stress_limit(const std::array<ProbeStresses, 3>& grids, const Eigen::VectorXd& volumes,
@@ -57,11 +57,14 @@ StressLimit stress_limit(const std::array<ProbeStresses, 3>& grids, const Eigen:
   for (int k = 0; k < 3; ++k) {
     ReferenceField& field = out.fields[k];
     field = extrapolate({only(k, of_grids[0]), only(k, of_grids[1]), only(k, of_grids[2])}, volumes, ratios, doubt);
-    if (doubt == 0 && field.correlation.value_or(1) < smallest_correlation)
+    if (doubt == 0 && are_refined(ratios) && field.correlation.value_or(1) < smallest_correlation) {
       field.nodal_uncertainty =
           what_is_left(of_grids[1].col(k) - of_grids[0].col(k), of_grids[2].col(k) - of_grids[1].col(k), ratios);
+      field.note = "the grids' differences point apart: finest grid, uncertain by the last difference";
+    }
     out.of_points.col(k) = field.displacement.col(k);
   }
+  out.peak_grows = peaks[0] < peaks[1] && peaks[1] < peaks[2];
   out.peak = extrapolate(peaks, solver_noise * peaks[2], {}, ratios);
   return out;
 }

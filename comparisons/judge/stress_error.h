@@ -18,9 +18,11 @@ struct StressLimit {
   NodalVectors of_points;                ///< one row per point [Pa]
   std::array<ReferenceField, 3> fields;  ///< each invariant's in its own column
   ReferenceValue peak;                   ///< largest von Mises' stress of all points [Pa]
+  bool peak_grows = false;               ///< on every grid
   Eigen::Index place = 0;                ///< its row
 
-  /// Whether the peak grows with every grid, as at a singular edge or corner: there is nothing to compare with.
+  /// Whether the peak grows with every grid and has no limit, as at a singular edge or corner: there is nothing to
+  /// compare with.
   bool peak_is_singular() const;
 };
 

@@ -186,9 +186,9 @@ ModelSample measured(const PreparedCase& prepared, const Lattice& lattice, const
   if (by_material && asked(e, "region"))
     sample.scalars.merge(region_means(built.model, e.regions, sample.state.displacement, e.model_kinematics()));
   if (by_material && asked(e, "interface"))
-    sample.scalars.merge(interface_forces(built.model, e.regions, sample.state.displacement,
-                                          weight_of_body(prepared, lattice, built, sample.state.load_reached),
-                                          e.model_kinematics()));
+    sample.scalars.merge(interface_forces(
+        built.model, e.regions, sample.state.displacement,
+        weight_of_body(prepared, lattice, built, in_motion ? 0 : sample.state.load_reached), e.model_kinematics()));
   if (asked(e, "network")) add_network(network, sample.scalars);
   if (asked(e, "line")) {
     sample.line = sample_line(*e.line, *kelvin_of(e), built.model, sample.state.displacement);

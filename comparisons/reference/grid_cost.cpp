@@ -28,6 +28,8 @@ double unknowns(const Mesh& mesh, int degree) {
 
 int degree_of(const std::string& element) { return element[1] - '0'; }
 
+double times_cells(const Experiment& e, const std::string& element) { return element == "p2" ? e.reference.refine : 1; }
+
 double factor_of(const IsotropicMaterial& material, bool finite) {
   return (material.poisson_ratio > pressures_above ? with_pressures : 1) * (finite ? large_strain : 1);
 }

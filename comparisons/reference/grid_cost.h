@@ -5,6 +5,7 @@
 
 #include "comparisons/reference/run_keeper.h"
 #include "fem_reference/exchange/request.h"
+#include "problem/case_file/experiment.h"
 
 namespace springproof {
 
@@ -14,6 +15,9 @@ double unknowns(const Cells& cells, int degree);  ///< of a block's nodes
 double unknowns(const Mesh& mesh, int degree);
 
 int degree_of(const std::string& element);  ///< 2 of "q2"
+
+/// fem::Discretisation::times_cells of an element of [reference].
+double times_cells(const Experiment& experiment, const std::string& element);
 
 /// An equilibrium takes so many times as long as one of linear theory far from nu = 1/2.
 double factor_of(const IsotropicMaterial& material, bool finite);

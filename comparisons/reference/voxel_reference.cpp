@@ -1,5 +1,7 @@
 #include "comparisons/reference/voxel_reference.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -116,6 +118,13 @@ std::optional<ErrorSplit> split_of_reactions(const PreparedCase& prepared, const
   return split;
 }
 
+/// That meshes were cut where their error is largest.
+std::string cut_note(double times, const std::vector<fem::Solution>& grids) {
+  if (times == 1) return {};
+  return fmt::format("cut into {}, {} and {} tetrahedra where their error is largest", grids[0].cells, grids[1].cells,
+                     grids[2].cells);
+}
+
 }  // namespace
 
 ReferenceGrids solve_body_grids(const PreparedCase& prepared, const IsotropicMaterial& material, const VtuOutput& vtu,
@@ -124,7 +133,7 @@ ReferenceGrids solve_body_grids(const PreparedCase& prepared, const IsotropicMat
   const Experiment& e = prepared.experiment;
   std::vector<fem::Discretisation> grids = grids_on(prepared.body.tetrahedra, e.reference.elements);
   for (fem::Discretisation& grid : grids) {
-    grid.times_cells = e.reference.refine;
+    grid.times_cells = times_cells(e, grid.element);
     if (grid.mesh + 1 == static_cast<int>(prepared.body.tetrahedra.size()))
       grid.vtu = reference_file(vtu, grid.element, prepared.experiment.setting_of(material));
   }
@@ -133,7 +142,7 @@ ReferenceGrids solve_body_grids(const PreparedCase& prepared, const IsotropicMat
   for (fem::Solution& s : solutions) s.grid.cells[0] = prepared.body.uncut[s.grid.mesh];
   auto at = solutions.begin();
   for (const std::string& element : e.reference.elements) {
-    out.elements.push_back({element, {at, at + 3}});
+    out.elements.push_back({element, {at, at + 3}, cut_note(times_cells(e, element), {at, at + 3})});
     at += 3;
   }
   if (e.models.empty()) return out;

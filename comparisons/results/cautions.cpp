@@ -49,13 +49,18 @@ void add_kinematics(const CaseResult& result, std::vector<std::string>& out) {
                     fmt::join(labels, ", "), labels.size() == 1 ? "s" : "", law, e.kinematics));
 }
 
-/// Of models whose stresses were asked for and are not known.
+/// Of models with results whose stresses were asked for and are not known, where the reference's are.
 void add_stressless(const CaseResult& result, std::vector<std::string>& out) {
+  const auto of_stress = [](const auto& record) { return record.measure.starts_with("stress"); };
+  const auto errors = [](const auto& record) { return record.measure.starts_with("stress_error"); };
+  if (std::none_of(result.references.begin(), result.references.end(), errors)) return;
   std::vector<std::string> labels;
-  for (const ModelChoice& model : result.experiment.models)
-    if (std::none_of(result.rows.begin(), result.rows.end(),
-                     [&](const Row& row) { return row.model == model.label && row.measure.starts_with("stress"); }))
+  for (const ModelChoice& model : result.experiment.models) {
+    const auto own = [&](const Row& row) { return row.model == model.label; };
+    if (std::any_of(result.rows.begin(), result.rows.end(), own) &&
+        std::none_of(result.rows.begin(), result.rows.end(), [&](const Row& r) { return own(r) && of_stress(r); }))
       labels.push_back(model.label);
+  }
   const std::vector<std::string>& measures = result.experiment.measures;
   const auto asked =
       std::find_if(measures.begin(), measures.end(), [](const auto& m) { return m.starts_with("stress"); });

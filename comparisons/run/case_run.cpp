@@ -218,7 +218,9 @@ void add_fem(PartRun& run, std::size_t lattice) {
     if (wanted("frequency", run.experiment().measures) && !run.experiment().body.is_voxels())
       scalars.merge(lowest_frequencies(run.prepared, here, s.grid.element, run.material));
     add_rows(run, lattice, name, run.part.runs.back().kinematics, {at_nodes(here, s.displacement)}, {scalars});
-    add_stress_errors(run, run.key(name, lattice), run.part.runs.back().kinematics, at_stress_points(run, lattice, s));
+    if (run.stress)
+      add_stress_errors(run, run.key(name, lattice), run.part.runs.back().kinematics,
+                        at_stress_points(run, lattice, s));
     save(run, lattice, name, sampled_field(here, s));
   }
 }

@@ -97,7 +97,8 @@ void add_block(const PreparedCase& prepared, Runs& runs) {
 void add_voxels(const PreparedCase& prepared, Runs& runs) {
   const Experiment& e = prepared.experiment;
   for (const std::string& element : e.reference.elements)
-    for (const auto& mesh : prepared.body.tetrahedra) runs.grid(unknowns(*mesh, degree_of(element)), true);
+    for (const auto& mesh : prepared.body.tetrahedra)
+      runs.grid(times_cells(e, element) * unknowns(*mesh, degree_of(element)), true);
   if (e.reference.elements.empty() || e.models.empty()) return;
   for (const Lattice& lattice : prepared.lattices) {
     const Mesh& mesh = *lattice.mesh;

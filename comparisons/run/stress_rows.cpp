@@ -91,6 +91,8 @@ ProbeStresses at_stress_points(const PartRun& run, std::size_t lattice, const fe
 }
 
 void build_stress_limit(PartRun& run, double doubt) {
+  const std::vector<std::string>& measures = run.experiment().measures;
+  if (!wanted("stress_peak", measures) && !wanted(error_name(0), measures)) return;
   const Eigen::VectorXd volumes = stress_volumes(run.prepared);
   const ElementGrids& first = run.grids.elements.front();
   if (volumes.sum() == 0) return;  // not compared
@@ -99,8 +101,8 @@ void build_stress_limit(PartRun& run, double doubt) {
   run.stress = stress_limit(grids, volumes, ratios_of(first), doubt);
   for (ReferenceField& field : run.stress->fields) widen(run.prepared.body.load_spread, field);
   run.stress->peak.uncertainty += run.prepared.body.load_spread * run.stress->peak.value;
-  if (wanted(error_name(0), run.experiment().measures)) record_errors(run, grids, volumes);
-  if (wanted("stress_peak", run.experiment().measures)) record_peak(run, grids);
+  if (wanted(error_name(0), measures)) record_errors(run, grids, volumes);
+  if (wanted("stress_peak", measures)) record_peak(run, grids);
 }
 
 void add_stress_errors(PartRun& run, const RunKey& key, const std::string& kinematics, const ProbeStresses& stress) {

@@ -13,8 +13,8 @@ namespace springproof {
 ProbeStresses at_stress_points(const PartRun& run, std::size_t lattice, const ModelParameters& parameters,
                                const std::array<NodalVectors, 2>& of_nodes);
 
-/// Those of finite elements on a lattice; of linear ones on a block the means at nodes, in which alternating pressures
-/// cancel, and trilinear between them.
+/// Those of finite elements on a lattice; of trilinear ones on a block the means at nodes, in which alternating
+/// pressures cancel, and trilinear between them.
 ProbeStresses at_stress_points(const PartRun& run, std::size_t lattice, const fem::Solution& solution);
 
 /// Finds the reference's and records how far its grids are off, if the case compares them.

@@ -23,13 +23,13 @@ namespace springproof::fem {
 struct Discretisation {
   Cells cells;                 ///< nx, ny, nz of the .geo: cells along each side of a block
   std::string element = "q2";  ///< "q1", "q2" (hexahedra), "p1", "p2" (tetrahedra)
-  double grading = 1.0;  ///< exponent that grades the cells of a block towards its faces (fem::graded); 1 = uniform
-  int mesh = -1;         ///< index into Request::meshes, used instead of the .geo; -1: none
-  int refinements = 0;   ///< of that mesh's hexahedra: each is cut into 8 this many times
+  double grading = 1.0;    ///< exponent that grades the cells of a block towards its faces (fem::graded); 1 = uniform
+  int mesh = -1;           ///< index into Request::meshes, used instead of the .geo; -1: none
+  int refinements = 0;     ///< of that mesh's hexahedra: each is cut into 8 this many times
   double times_cells = 1;  ///< of tetrahedra of second order: cut where their estimated error is largest, until there
-                           ///< are so many times as many (refined_tetrahedra.h)
-  int steps = 0;         ///< in which Request::motion is made on this grid
-  std::string vtu = {};  ///< file for ParaView: the solution and its stress on the elements' own mesh; empty: none
+                           ///< are so many times as many (local_refinement.h)
+  int steps = 0;           ///< in which Request::motion is made on this grid
+  std::string vtu = {};    ///< file for ParaView: the solution and its stress on the elements' own mesh; empty: none
 };
 
 /// xx yy zz xy yz xz [Pa], one row per point.

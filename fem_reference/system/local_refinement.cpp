@@ -62,12 +62,16 @@ std::vector<double> squared_errors(const std::vector<CornerStrains>& cells) {
   return errors;
 }
 
+double length(const CutMesh& mesh, const std::array<int, 2>& edge) {
+  return (mesh.points()[edge[0]] - mesh.points()[edge[1]]).norm();
+}
+
 std::array<int, 2> longest_edge(const CutMesh& mesh, const Tetrahedron& cell) {
   std::array<int, 2> longest{};
   double most = 0;
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < i; ++j)
-      if (const double l = (mesh.points()[cell[i]] - mesh.points()[cell[j]]).norm(); l > most) {
+      if (const double l = length(mesh, {cell[i], cell[j]}); l > most) {
         most = l;
         longest = {cell[i], cell[j]};
       }
@@ -77,15 +81,17 @@ std::array<int, 2> longest_edge(const CutMesh& mesh, const Tetrahedron& cell) {
 }  // namespace
 
 Mesh cut_where_errors_are_largest(const Mesh& mesh, const Body3& body, const dealii::DoFHandler<3>& dof_handler,
-                                  const DofVector& displacement, std::size_t most) {
-  const std::vector<double> errors = squared_errors(corner_strains(body, dof_handler, displacement));
+                                  const DofVector& displacement, std::size_t most, double shortest) {
+  CutMesh cut(mesh);
+  std::vector<double> errors = squared_errors(corner_strains(body, dof_handler, displacement));
+  for (std::size_t c = 0; c < errors.size(); ++c)
+    if (length(cut, longest_edge(cut, mesh.tetrahedra[c])) < 2 * shortest) errors[c] = 0;
   std::vector<std::size_t> order(errors.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return errors[a] > errors[b]; });
   double left = cut_share * std::accumulate(errors.begin(), errors.end(), 0.0);
-  CutMesh cut(mesh);
   for (const std::size_t c : order) {
-    if (left <= 0 || cut.cells() >= most) break;
+    if (!(left > 0) || cut.cells() >= most) break;
     left -= errors[c];
     const auto [a, b] = longest_edge(cut, mesh.tetrahedra[c]);
     cut.refine(a, b);

@@ -13,7 +13,8 @@ namespace springproof::fem {
 /// each corner (Zienkiewicz and Zhu 1987), and cut are the fewest cells that have 0.6 of its square (Doerfler 1996).
 /// @param mesh that the body is of
 /// @param displacement of second order, with current ghost values
+/// @param shortest edge that a cut may leave [m]: under a point force, and at a rim, the error is never spread evenly
 Mesh cut_where_errors_are_largest(const Mesh& mesh, const Body3& body, const dealii::DoFHandler<3>& dof_handler,
-                                  const DofVector& displacement, std::size_t most);
+                                  const DofVector& displacement, std::size_t most, double shortest);
 
 }  // namespace springproof::fem

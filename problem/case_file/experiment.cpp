@@ -141,8 +141,6 @@ ReferenceChoice read_reference(const TomlValue& value, bool voxels) {
     if (const auto given = table.find(key); given && !voxels)
       refuse(*given, "is for bodies of voxels", "cells and grading, for bodies of hexahedra");
   if (const auto edge = table.find("edge_m")) reference.edge = as_number(*edge, positive_number);
-  if (const auto times = table.find("refine"))
-    reference.refine = as_number(*times, {"a number from 1 to 10", 1, 10, true, true});
   for (const char* key : {"cells", "grading"})
     if (const auto given = table.find(key); given && voxels)
       refuse(*given, "is for bodies of hexahedra", "edge_m, for bodies of voxels");
@@ -156,6 +154,11 @@ ReferenceChoice read_reference(const TomlValue& value, bool voxels) {
     reference.elements.clear();
     if (const auto* array = elements->node->as_array(); !array || !array->empty())
       reference.elements = read_elements(*elements, voxels ? std::vector<std::string>{"p2", "p1"} : element_names());
+  }
+  if (const auto times = table.find("refine")) {
+    reference.refine = as_number(*times, {"a number from 1 to 10", 1, 10, true, true});
+    if (std::count(reference.elements.begin(), reference.elements.end(), "p2") == 0)
+      refuse(*times, "cuts tetrahedra of second order", "\"p2\" among the elements, or no such key");
   }
   if (const auto grading = table.find("grading"))
     reference.grading = as_number(*grading, {"a number from 1 to 3", 1, 3, true, true});

@@ -239,7 +239,7 @@ constexpr Key reference_keys[] = {
   {"elements",   "each on three grids or meshes; the first is the reference; []: none", "a list of elements: q1, q2, p1, p2", "[\"q2\"]; of voxels [\"p2\"]", "[\"q2\", \"q1\"]"},
   {"grading",    "draws elements towards the faces of a block; 1: even",     "a number from 1 to 3",                  "1.5; 1 beside [[patch]]", "1"},
   {"edge_m",     "of the tetrahedra of the finest of three meshes, of voxels", above_0,                               "from the body", "0.01"},
-  {"refine",     "tetrahedra are cut where their error is largest, until so many times as many; of equilibria", "a number from 1 to 10", "1", "3"},
+  {"refine",     "so many times as many tetrahedra, cut where they err; of equilibria", "a number from 1 to 10", "1", "3"},
   {"smooth",     "the solution is smooth: the elements' order in theory is assumed", a_flag,                          "false",  "true"},
   {"in_time",    "finite elements move too, minutes for each Poisson's ratio; with [dynamics] and [[probe]]",  a_flag,                                  "false",  "true"},
   {"integrator", "of their steps, with in_time",                             "midpoint, energy_momentum",             "midpoint", "\"energy_momentum\""},

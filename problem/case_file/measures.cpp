@@ -220,7 +220,7 @@ const std::vector<Measure>& measure_table() {
     {"probe", value, {{"displacement", "m"}}, "displacement.PROBE.x|y|z|magnitude [m]", "", "", probe_rows},
     {"stress", value, {{"stress", "Pa"}}, "stress.PROBE.xx|yy|zz|xy|yz|xz [Pa], finite elements and `hybmss_avg` at small strain", "", "", stress_rows},
     {"stress_error", distance, {{"stress_error", "1"}},
-     "stress_error.von_mises|hydrostatic|principal of `hybmss_avg` and finite elements, small strain: relative L2 difference to FEM over the body",
+     "stress_error.von_mises|hydrostatic|principal of `hybmss_avg` and, of blocks, finite elements, small strain: relative L2 difference to FEM over the body",
      "stress error", "of von Mises’, the mean normal and the largest principal stress, recovered at nodes: |σ − σ_fem| in the L2 norm over the body, divided by |σ_fem|",
      stress_error_rows},
     {"stress_peak", value, {{"stress_peak", "Pa"}}, "largest von Mises stress of the same [Pa], where the reference's is not at a singular edge",

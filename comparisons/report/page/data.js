@@ -103,8 +103,8 @@ function percent(x) {
 
 const signed = (x, text) => (x > 0 && !text.startsWith('<') ? '+' : '') + text;
 
-const isDistance = measure => /^displacement_error(_max)?$|^(reaction|motion)_error$|_distance$|^line\.\w+\.(all|[xyz]{2})$/.test(measure);
-const inPercent = (measure, unit) => unit === '1' && /^displacement|^(reaction|motion)_error|^volume|^line/.test(measure) && !/[_.]order$/.test(measure);
+const isDistance = measure => /^displacement_error(_max)?$|^stress_error\.|^(reaction|motion)_error$|_distance$|^line\.\w+\.(all|[xyz]{2})$/.test(measure);
+const inPercent = (measure, unit) => unit === '1' && /^displacement|^(reaction|motion|stress)_error|^volume|^line/.test(measure) && !/[_.]order$/.test(measure);
 
 /// The unit a set of values is shown in: percent, a fitting length unit, or the unit itself.
 function displayUnit(measure, unit, values) {
@@ -164,14 +164,14 @@ const lineMeanings = {
   'line.strain.all': 'mean |ε − Kelvin’s| over the middle of the line, divided by the mean |Kelvin’s|',
   'line.stress.all': 'mean |σ − Kelvin’s| over the middle of the line, divided by the mean |Kelvin’s|',
 };
-const measureMeaning = measure => measure.startsWith('torque.') ? 'about the centroid of the patch at rest' : lineMeanings[measure] || (measureTable[measure] || {}).meaning;
+const measureMeaning = measure => measure.startsWith('torque.') ? 'about the centroid of the patch at rest' : lineMeanings[measure] || (measureTable[measure] || measureTable[measure.split('.')[0]] || {}).meaning;
 
 function measureText(measure) {
   if ((measureTable[measure] || {}).title) return measureTable[measure].title;
   const [what, where, component] = measure.split('.');
   if (what === 'line') return component === 'order' ? `observed order of the ${where} deviation` :
     `${where} deviation${component === 'all' ? '' : ', ' + component}`;
-  const words = what.replace(/_/g, ' ');
+  const words = measureTable[what]?.title || what.replace(/_/g, ' ');
   if (!where) return words;
   return `${words} ${/force|torque|reaction|mean/.test(what) ? 'on' : 'at'} ${where}` + (component ? `, ${component}` : '');
 }

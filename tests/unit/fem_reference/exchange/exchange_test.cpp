@@ -70,7 +70,7 @@ TEST(FemRequest, TheRestArrives) {
   request.size = {1, 2, 3};
   request.law = "hencky";
   request.material = {1e4, 0.499, 1060};
-  request.grids = {{{4, 5, 6}, "p2", 1.5, 0, 2}};
+  request.grids = {{{4, 5, 6}, "p2", 1.5, 0, 2, 3}};
   request.points = NodalVectors::Random(4, 3);
   request.stress_points = NodalVectors::Random(2, 3);
   request.tolerance = 1e-11;

@@ -63,6 +63,19 @@ TEST(LocalRefinement, KeepsTheBodyItsPatchesAndItsMaterials) {
     EXPECT_NEAR(nodal_areas(after, patch(after, name)).sum(), share, 1e-12) << name;
 }
 
+/// Displacements under a point force have no limit: cuts there end, and the other cells have their turn.
+TEST(LocalRefinement, UnderAPointForceEnds) {
+  fem::GridProblem problem = held_on_half(2);
+  problem.loads.push_back(PointForce{{0.71, 0.42, 0.27}, {0, 0, 100}});
+  const Mesh after = fem::refined_locally(problem, 10);
+  EXPECT_GE(after.tetrahedra.size(), 10 * problem.coarse.tetrahedra.size());
+  double shortest = 1;
+  for (const Tetrahedron& t : after.tetrahedra)
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < i; ++j) shortest = std::min(shortest, (after.nodes.row(t[i]) - after.nodes.row(t[j])).norm());
+  EXPECT_GT(shortest, 0.25 / 64 / 4);
+}
+
 TEST(LocalRefinement, LeavesOtherElementsAsTheyAre) {
   fem::GridProblem problem = held_on_half(2);
   problem.degree = 1;

@@ -129,7 +129,8 @@ std::string case_with(const KeyTable& table, const Key& key, const std::string& 
   const std::string name = table.name, full = name + "." + key.name;
   const bool in_time = full == "reference.in_time" || full == "reference.integrator";
   const bool exact = full == "compare.exact" || name == "load.body_force_of";
-  const bool voxels = name.starts_with("patch") || full == "compare.parts" || full == "reference.edge_m";
+  const bool voxels =
+      name.starts_with("patch") || full == "compare.parts" || full == "reference.edge_m" || full == "reference.refine";
   std::string text;
   if (name.empty()) text += table_with(table, key, value).append("\n");
   if (name.starts_with("dynamics") || in_time) text += "kinematics = \"hencky\"\n";
