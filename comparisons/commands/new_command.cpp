@@ -9,6 +9,7 @@
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "comparisons/sweep/status.h"
 #include "meshes/mesher/mesher.h"
@@ -44,13 +45,16 @@ double area_of(const PatchRule& rule, const Surface& surface) {
   return sum;
 }
 
-/// The direction in which the nodes lie farthest from their middle.
-Vec3 own_axis(const Surface& surface) {
+/// The direction in which the nodes lie farthest from their middle; nothing of a round body or a square plate.
+std::optional<Vec3> own_axis(const Surface& surface) {
+  constexpr double least = 1.5;  // of the squared distances, over those in the next direction
   Vec3 mean = Vec3::Zero();
   for (const Vec3& p : surface.points) mean += p / static_cast<double>(surface.points.size());
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
   for (const Vec3& p : surface.points) spread += (p - mean) * (p - mean).transpose();
-  const Vec3 axis = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(2);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> own(spread);
+  if (own.eigenvalues()[2] < least * own.eigenvalues()[1]) return {};
+  const Vec3 axis = own.eigenvectors().col(2);
   return axis.sum() < 0 ? Vec3(-axis) : axis;
 }
 
@@ -67,7 +71,9 @@ void find_ends(const Surface& surface, Measured& m) {
   }
   const auto suffices = [&](const PatchRule& end) { return area_of(end, surface) >= enough * m.volume / m.length; };
   if (std::all_of(m.ends.begin(), m.ends.end(), suffices)) return;
-  m.along = own_axis(surface);
+  const std::optional<Vec3> axis = own_axis(surface);
+  if (!axis) return;
+  m.along = *axis;
   const auto [low, high] =
       std::ranges::minmax_element(surface.points, {}, [&](const Vec3& p) { return m.along.dot(p); });
   m.length = m.along.dot(*high - *low);
