@@ -58,9 +58,9 @@ std::optional<Vec3> own_axis(const Surface& surface) {
   return axis.sum() < 0 ? Vec3(-axis) : axis;
 }
 
-/// The ends along an axis of the box, if each has half the area of a mean section or more.  A body that lies askew has
-/// a corner there: held at it, it turns about a point.  Then what is beyond planes across the body's own longest
-/// direction, each as deep as it takes for a section's area.
+/// The ends along an axis of the box, if each has half the area of a mean section or more.  A round body or one that
+/// lies askew has a point or a corner there: held at it, it turns about it.  Then what is beyond planes across the
+/// body's own length, or that axis, each as deep as it takes for a section's area.
 void find_ends(const Surface& surface, Measured& m) {
   constexpr double enough = 0.5, deepest = 0.3;
   m.along = Vec3::Unit(m.longest);
@@ -71,15 +71,13 @@ void find_ends(const Surface& surface, Measured& m) {
   }
   const auto suffices = [&](const PatchRule& end) { return area_of(end, surface) >= enough * m.volume / m.length; };
   if (std::all_of(m.ends.begin(), m.ends.end(), suffices)) return;
-  const std::optional<Vec3> axis = own_axis(surface);
-  if (!axis) return;
-  m.along = *axis;
+  if (const std::optional<Vec3> axis = own_axis(surface)) m.along = *axis;
   const auto [low, high] =
       std::ranges::minmax_element(surface.points, {}, [&](const Vec3& p) { return m.along.dot(p); });
   m.length = m.along.dot(*high - *low);
   for (int end = 0; end < 2; ++end)
     for (double depth = 0.05; depth < deepest; depth += 0.05) {
-      const Vec3 out = end ? m.along : Vec3(-m.along);
+      const Vec3 out = end ? m.along : Vec3(Vec3::Zero() - m.along);  // no -0
       m.ends[end].side.reset();
       m.ends[end].name = end ? "high" : "low";
       m.ends[end].beyond = PatchRule::Beyond{(end ? *high : *low) - depth * m.length * out, out};

@@ -113,7 +113,10 @@ def test_hanging(tmp_path):
     moves = [float(u) for u in re.search(r"where it is loaded by \[(.*)\]", out).group(1).split(",")]
     written = run(program, "new", "icosahedron.stl", "-E", "5e3", "--nu", "0.45", "--scale", "0.1", cwd=tmp_path)
     case = re.sub(r"^voxels = .*", "voxels = 300", written, flags=re.M)
-    case = case.replace('"left"', '"bottom"').replace('"right"', '"top"').replace('# kinematics = "hencky"', 'kinematics = "hencky"\n')
+    for end, side in (("low", "bottom"), ("high", "top")):
+        case = re.sub(rf'^name = "{end}"\nbeyond = .*', f'name = "{side}"\nside = "{side}"', case, flags=re.M)
+        case = case.replace(f'on = "{end}"', f'on = "{side}"')
+    case = case.replace('# kinematics = "hencky"', 'kinematics = "hencky"\n')
     case = re.sub(r"^force_N = .*", "force_N = [0.1, 0, -0.5]", case, flags=re.M)
     case = re.sub(r"^models = .*", 'models = ["hybmss_avg"]\nmeasures = ["mean_displacement"]\n[reference]\nelements = []', case, flags=re.M)
     (tmp_path / "case.toml").write_text(case)
