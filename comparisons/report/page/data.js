@@ -173,6 +173,7 @@ function measureText(measure) {
     `${where} deviation${component === 'all' ? '' : ', ' + component}`;
   const words = measureTable[what]?.title || what.replace(/_/g, ' ');
   if (!where) return words;
+  if (what === 'stress_error') return `${words}, ${where.replace('_', ' ')}`;
   return `${words} ${/force|torque|reaction|mean/.test(what) ? 'on' : 'at'} ${where}` + (component ? `, ${component}` : '');
 }
 
