@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
-#include <cmath>
 #include <ctime>
 #include <stdexcept>
 
@@ -22,6 +21,7 @@
 #include "fem_reference/system/materials.h"
 #include "fem_reference/system/sample.h"
 #include "fem_reference/system/solution_file.h"
+#include "meshes/quality.h"
 #include "meshes/volume.h"
 #include "problem/system/input_error.h"
 #include "problem/system/progress.h"
@@ -231,38 +231,33 @@ void solve_into(Solution& solution, const GridProblem& problem, const Body3& bod
   solution.min_jacobian = volume.min_jacobian;
 }
 
-std::unique_ptr<dealii::DoFHandler<3>> displacements_on(const Body3& body, int degree) {
-  auto dof_handler = std::make_unique<dealii::DoFHandler<3>>(body.triangulation);
-  dof_handler->distribute_dofs(*displacement_element(body, degree));
-  return dof_handler;
-}
-
 }  // namespace
 
 Mesh refined_locally(GridProblem problem, double times_cells) {
   constexpr double shortest = 1. / 64;  // edge that is left, over the mean one
-  if (problem.degree != 2 || problem.coarse.tetrahedra.empty()) return problem.coarse;
+  Mesh& mesh = problem.coarse;
+  if (problem.degree != 2 || mesh.tetrahedra.empty()) return mesh;
   if (process_count() > 1) throw InputError("tetrahedra are cut by one process");
   dealii::MultithreadInfo::set_thread_limit(1);
-  const double cells = double(problem.coarse.tetrahedra.size());
-  const double edge = std::cbrt(6 * std::sqrt(2.0) * volume(problem.coarse, problem.coarse.nodes) / cells);
+  const double cells = double(mesh.tetrahedra.size()), edge = edge_of_regular(volume(mesh, mesh.nodes), cells);
+  const auto enough = std::size_t(times_cells * cells);
   problem.law = "linear";
   problem.tolerance = 1e-3;
-  for (std::size_t before = 0; before < problem.coarse.tetrahedra.size();) {
-    before = problem.coarse.tetrahedra.size();
-    if (double(before) >= times_cells * cells) break;
-    progress::detail(fmt::format("{} tetrahedra, where their error is", before));
-    const auto body = triangulate(problem.coarse, 0, problem.place);
-    const auto dof_handler = displacements_on(*body, problem.degree);
-    DofVector u = zero_vector(*dof_handler);
+  while (mesh.tetrahedra.size() < enough) {
+    progress::detail(fmt::format("{} tetrahedra, where their error is", mesh.tetrahedra.size()));
+    const auto body = triangulate(mesh, 0, problem.place);
+    dealii::DoFHandler<3> dof_handler(body->triangulation);
+    dof_handler.distribute_dofs(*displacement_element(*body, problem.degree));
+    DofVector u = zero_vector(dof_handler);
     Solution coarse;
-    if (!solve_linear(problem, Discrete(problem, *body, *dof_handler), u, coarse).converged)
+    if (!solve_linear(problem, Discrete(problem, *body, dof_handler), u, coarse).converged)
       throw std::runtime_error("where tetrahedra are to be cut: " + coarse.message);
     u.update_ghost_values();
-    problem.coarse = cut_where_errors_are_largest(problem.coarse, *body, *dof_handler, u,
-                                                  std::size_t(times_cells * cells), shortest * edge);
+    Mesh cut = cut_where_errors_are_largest(mesh, *body, dof_handler, u, enough, shortest * edge);
+    if (cut.tetrahedra.size() == mesh.tetrahedra.size()) break;
+    mesh = std::move(cut);
   }
-  return problem.coarse;
+  return mesh;
 }
 
 Solution solve_grid(const GridProblem& problem) {
@@ -278,8 +273,8 @@ Solution solve_grid(const GridProblem& problem) {
     throw InputError(fmt::format("elements of degree {}: only 1 and 2 are there", problem.degree));
   const auto body = triangulate(problem.coarse, problem.refinements, problem.place);
   check_patches(*body, problem.loads);
-  const auto owned = displacements_on(*body, problem.degree);
-  dealii::DoFHandler<3>& dof_handler = *owned;
+  dealii::DoFHandler<3> dof_handler(body->triangulation);
+  dof_handler.distribute_dofs(*displacement_element(*body, problem.degree));
   if (matrix_free(problem, *body)) dof_handler.distribute_mg_dofs();
 
   Solution solution;

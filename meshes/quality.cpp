@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 namespace springproof {
@@ -34,6 +35,8 @@ Shape shape_of(const std::array<Vec3, 4>& x) {
 }
 
 }  // namespace
+
+double edge_of_regular(double volume, double tetrahedra) { return std::cbrt(6 * std::sqrt(2.0) * volume / tetrahedra); }
 
 TetrahedraQuality quality_of(const Mesh& mesh) {
   TetrahedraQuality quality;

@@ -14,6 +14,9 @@ struct TetrahedraQuality {
   double mean_edge = 0;       ///< [m]
 };
 
+/// Edge of regular tetrahedra, so many of which have this volume.
+double edge_of_regular(double volume, double tetrahedra);
+
 TetrahedraQuality quality_of(const Mesh& mesh);
 
 /// "12345 tetrahedra, mean edge 0.01 m, worst 3 r/R 0.2 near (...) m, smallest dihedral angle 9 degrees".

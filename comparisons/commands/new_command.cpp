@@ -75,14 +75,15 @@ void find_ends(const Surface& surface, Measured& m) {
   const auto [low, high] =
       std::ranges::minmax_element(surface.points, {}, [&](const Vec3& p) { return m.along.dot(p); });
   m.length = m.along.dot(*high - *low);
-  for (int end = 0; end < 2; ++end)
+  for (int end = 0; end < 2; ++end) {
+    const Vec3 out = end ? m.along : Vec3(Vec3::Zero() - m.along);  // no -0
+    PatchRule& rule = m.ends[end] = {};
+    rule.name = end ? "high" : "low";
     for (double depth = 0.05; depth < deepest; depth += 0.05) {
-      const Vec3 out = end ? m.along : Vec3(Vec3::Zero() - m.along);  // no -0
-      m.ends[end].side.reset();
-      m.ends[end].name = end ? "high" : "low";
-      m.ends[end].beyond = PatchRule::Beyond{(end ? *high : *low) - depth * m.length * out, out};
-      if (area_of(m.ends[end], surface) >= m.volume / m.length) break;
+      rule.beyond = PatchRule::Beyond{(end ? *high : *low) - depth * m.length * out, out};
+      if (area_of(rule, surface) >= m.volume / m.length) break;
     }
+  }
 }
 
 Measured measured(const MeshRequest& request) {

@@ -42,17 +42,21 @@ NodalVectors invariants(const ProbeStresses& stress) {
   return out;
 }
 
+std::array<double, 3> StressLimit::peaks() const {
+  return {of_grids[0].col(0).maxCoeff(), of_grids[1].col(0).maxCoeff(), of_grids[2].col(0).maxCoeff()};
+}
+
 bool StressLimit::peak_is_singular() const {
-  return peak_grows && peak.sequence == Sequence::not_converging && peak.uncertainty > known_peak * peak.value;
+  const auto [coarse, middle, fine] = peaks();
+  return coarse < middle && middle < fine && peak.sequence == Sequence::not_converging &&
+         peak.uncertainty > known_peak * peak.value;
 }
 
 StressLimit stress_limit(const std::array<ProbeStresses, 3>& grids, const Eigen::VectorXd& volumes,
                          const GridRatios& ratios, double doubt) {
-  std::vector<NodalVectors> of_grids;
-  std::vector<double> peaks;
-  for (const ProbeStresses& stress : grids) of_grids.push_back(invariants(stress));
   StressLimit out;
-  for (const NodalVectors& values : of_grids) peaks.push_back(values.col(0).maxCoeff(&out.place));
+  auto& of_grids = out.of_grids;
+  std::transform(grids.begin(), grids.end(), of_grids.begin(), invariants);
   out.of_points.resize(of_grids[2].rows(), 3);
   for (int k = 0; k < 3; ++k) {
     ReferenceField& field = out.fields[k];
@@ -64,8 +68,9 @@ StressLimit stress_limit(const std::array<ProbeStresses, 3>& grids, const Eigen:
     }
     out.of_points.col(k) = field.displacement.col(k);
   }
-  out.peak_grows = peaks[0] < peaks[1] && peaks[1] < peaks[2];
-  out.peak = extrapolate(peaks, solver_noise * peaks[2], {}, ratios);
+  of_grids[2].col(0).maxCoeff(&out.place);
+  const auto peaks = out.peaks();
+  out.peak = extrapolate({peaks.begin(), peaks.end()}, solver_noise * peaks[2], {}, ratios);
   return out;
 }
 

@@ -7,19 +7,19 @@
 
 namespace springproof {
 
-/// What is compared of a stress, in the order of the columns of invariants().
-inline constexpr std::array<const char*, 3> invariant_names = {"von_mises", "hydrostatic", "principal"};
-
-/// Von Mises' stress, the mean normal stress and the largest principal stress [Pa], one row per point.
+/// Von Mises' stress, the mean normal stress and the largest principal stress [Pa], one row per point: in the order of
+/// the rows of the measure stress_error.
 NodalVectors invariants(const ProbeStresses& stress);
 
 /// The invariants of the reference.
 struct StressLimit {
-  NodalVectors of_points;                ///< one row per point [Pa]
+  std::array<NodalVectors, 3> of_grids;  ///< coarse to fine, one row per point [Pa]
+  NodalVectors of_points;                ///< their limit
   std::array<ReferenceField, 3> fields;  ///< each invariant's in its own column
   ReferenceValue peak;                   ///< largest von Mises' stress of all points [Pa]
-  bool peak_grows = false;               ///< on every grid
   Eigen::Index place = 0;                ///< its row
+
+  std::array<double, 3> peaks() const;  ///< of the grids [Pa]
 
   /// Whether the peak grows with every grid and has no limit, as at a singular edge or corner: there is nothing to
   /// compare with.

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "meshes/patches/rim.h"
+#include "meshes/quality.h"
 #include "meshes/volume.h"
 
 namespace springproof {
@@ -36,7 +37,7 @@ double distance(const Vec3& p, const RimEdge& e) {
 
 double element_size(const PreparedCase& prepared) {
   const Mesh& body = *prepared.body.tetrahedra.back();
-  return std::cbrt(6 * std::sqrt(2.0) * volume(body, body.nodes) / prepared.body.uncut.back());
+  return edge_of_regular(volume(body, body.nodes), prepared.body.uncut.back());
 }
 
 std::vector<std::optional<NearRim>> rims_near(const PreparedCase& prepared, const std::vector<Probe>& probes) {

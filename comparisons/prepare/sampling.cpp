@@ -112,8 +112,6 @@ Eigen::Index stress_probes(const PreparedCase& prepared) {
   return wanted("stress", e.measures) ? static_cast<Eigen::Index>(e.probes.size()) : 0;
 }
 
-Eigen::Index pictured_stresses(const PreparedCase& prepared) { return pictured_surface(prepared).rows(); }
-
 NodalVectors stress_points(const PreparedCase& prepared) {
   const NodalVectors probes = probe_points(prepared.experiment).topRows(stress_probes(prepared));
   return stacked(stacked(probes, middles(cells_of_stresses(prepared))), pictured_surface(prepared));

@@ -46,9 +46,8 @@ NodalVectors stress_points(const PreparedCase& prepared);
 /// lattices, so that those of linear elements can be averaged at nodes.
 NodalVectors requested_stress_points(const PreparedCase& prepared);
 
-/// How many of stress_points() are probes, and of the surface.
+/// How many of stress_points() are probes.
 Eigen::Index stress_probes(const PreparedCase& prepared);
-Eigen::Index pictured_stresses(const PreparedCase& prepared);
 
 /// The volume that each of them stands for [m^3]: 0 of probes and of the surface.
 Eigen::VectorXd stress_volumes(const PreparedCase& prepared);

@@ -18,6 +18,7 @@
 #include "meshes/mesher/mesher_exchange.h"
 #include "meshes/patches/refined_rims.h"
 #include "meshes/patches/select_patches.h"
+#include "meshes/quality.h"
 #include "meshes/regions/mark_regions.h"
 #include "meshes/volume.h"
 #include "meshes/voxels/voxelise.h"
@@ -79,7 +80,7 @@ double coarseness(const Mesh& mesh, const PreparedCase& prepared) {
 std::vector<std::string> refine_rims(const PreparedCase& prepared, int uncut, Mesh& mesh) {
   const Experiment& e = prepared.experiment;
   if (e.reference.elements.empty() || e.model_kinematics() == Kinematics::finite) return {};
-  const double edge = std::cbrt(6 * std::sqrt(2.0) * volume(mesh, mesh.nodes) / uncut);
+  const double edge = edge_of_regular(volume(mesh, mesh.nodes), uncut);
   const double coarser = std::cbrt(static_cast<double>(prepared.body.uncut.back()) / uncut);
   std::vector<std::string> held = supported_patches(e);
   for (const PatchRule& rule : e.patches)  // by normals: ragged, on noise as long as the surface is large

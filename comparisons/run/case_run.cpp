@@ -93,8 +93,9 @@ std::size_t cells_in_body(const Lattice& lattice, const ModelParameters& paramet
 
 /// Stresses on the picture that was added last, of the true surface where there is one.
 void add_to_picture(PartRun& run, const ProbeStresses& stress) {
-  if (stress.rows() > 0)
-    run.part.pictures.back().von_mises = von_mises(stress.bottomRows(pictured_stresses(run.prepared)));
+  Picture& p = run.part.pictures.back();
+  const auto nodes = static_cast<Eigen::Index>(p.rest.size() / 3);
+  if (stress.rows() >= nodes) p.von_mises = von_mises(stress.bottomRows(nodes));
 }
 
 /// What is recorded of the run of a sample, with a result or without.

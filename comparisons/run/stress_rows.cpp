@@ -9,7 +9,9 @@
 namespace springproof {
 namespace {
 
-std::string error_name(int invariant) { return fmt::format("stress_error.{}", invariant_names[invariant]); }
+std::string error_name(const PartRun& run, int invariant) {
+  return rows_of_measure("stress_error", run.experiment())[invariant];
+}
 
 std::string place_of(const PartRun& run) {
   const Eigen::RowVector3d at = stress_points(run.prepared).row(run.stress->place);
@@ -33,14 +35,14 @@ ReferenceRecord blank_record(const PartRun& run, const std::string& measure) {
   return record;
 }
 
-void record_errors(PartRun& run, const std::array<ProbeStresses, 3>& grids, const Eigen::VectorXd& volumes) {
+void record_errors(PartRun& run, const Eigen::VectorXd& volumes) {
   std::array<Eigen::Vector3d, 3> off;
   for (int g = 0; g < 3; ++g)
-    off[g] = stress_errors(invariants(grids[g]) - run.stress->of_points, *run.stress, volumes);
+    off[g] = stress_errors(run.stress->of_grids[g] - run.stress->of_points, *run.stress, volumes);
   const Eigen::Vector3d uncertainty = uncertainties(*run.stress, volumes);
   for (int k = 0; k < 3; ++k) {
     const ReferenceField& field = run.stress->fields[k];
-    ReferenceRecord record = blank_record(run, error_name(k));
+    ReferenceRecord record = blank_record(run, error_name(run, k));
     record.values = {off[0][k], off[1][k], off[2][k]};
     record.observed_order = field.observed_order;
     record.uncertainty = uncertainty[k];
@@ -51,10 +53,10 @@ void record_errors(PartRun& run, const std::array<ProbeStresses, 3>& grids, cons
   }
 }
 
-void record_peak(PartRun& run, const std::array<ProbeStresses, 3>& grids) {
+void record_peak(PartRun& run) {
   const ReferenceValue& peak = run.stress->peak;
   ReferenceRecord record = blank_record(run, "stress_peak");
-  for (const ProbeStresses& stress : grids) record.values.push_back(invariants(stress).col(0).maxCoeff());
+  for (const double of_grid : run.stress->peaks()) record.values.push_back(of_grid);
   record.value = peak.value;
   record.uncertainty = peak.uncertainty;
   record.observed_order = peak.observed_order;
@@ -92,7 +94,7 @@ ProbeStresses at_stress_points(const PartRun& run, std::size_t lattice, const fe
 
 void build_stress_limit(PartRun& run, double doubt) {
   const std::vector<std::string>& measures = run.experiment().measures;
-  if (!wanted("stress_peak", measures) && !wanted(error_name(0), measures)) return;
+  if (!wanted("stress_peak", measures) && !wanted("stress_error", measures)) return;
   const Eigen::VectorXd volumes = stress_volumes(run.prepared);
   const ElementGrids& first = run.grids.elements.front();
   if (volumes.sum() == 0) return;  // not compared
@@ -101,8 +103,8 @@ void build_stress_limit(PartRun& run, double doubt) {
   run.stress = stress_limit(grids, volumes, ratios_of(first), doubt);
   for (ReferenceField& field : run.stress->fields) widen(run.prepared.body.load_spread, field);
   run.stress->peak.uncertainty += run.prepared.body.load_spread * run.stress->peak.value;
-  if (wanted(error_name(0), measures)) record_errors(run, grids, volumes);
-  if (wanted("stress_peak", measures)) record_peak(run, grids);
+  if (wanted("stress_error", measures)) record_errors(run, volumes);
+  if (wanted("stress_peak", measures)) record_peak(run);
 }
 
 void add_stress_errors(PartRun& run, const RunKey& key, const std::string& kinematics, const ProbeStresses& stress) {
@@ -125,7 +127,7 @@ void add_stress_errors(PartRun& run, const RunKey& key, const std::string& kinem
     if (measure == "stress_peak") row.of = place_of(run);
     run.part.rows.push_back(row);
   };
-  for (int k = 0; k < 3; ++k) add(error_name(k), errors[k], 0, uncertainty[k]);
+  for (int k = 0; k < 3; ++k) add(error_name(run, k), errors[k], 0, uncertainty[k]);
   if (!limit.peak_is_singular()) add("stress_peak", ours.col(0).maxCoeff(), limit.peak.value, limit.peak.uncertainty);
 }
 

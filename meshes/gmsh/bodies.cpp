@@ -94,7 +94,7 @@ void refuse_too_many(const MeshRequest& r, double volume) {
                                double(most_cells)));
 }
 
-double edge_for(int tetrahedra, double volume) { return 0.88 * std::cbrt(6 * std::sqrt(2) * volume / tetrahedra); }
+double edge_for(int tetrahedra, double volume) { return 0.88 * edge_of_regular(volume, tetrahedra); }
 
 void want_edge(double edge) {
   gmsh::option::setNumber("Mesh.MeshSizeMin", edge);

@@ -12,6 +12,7 @@
 #include "meshes/gmsh/split_cells.h"
 #include "meshes/halved.h"
 #include "meshes/patches/transfer_patches.h"
+#include "meshes/quality.h"
 #include "meshes/regions/mark_regions.h"
 #include "meshes/volume.h"
 #include "problem/processes/child.h"
@@ -135,7 +136,7 @@ MeshedBody cut_finer(const MeshRequest& r, MeshedBody own) {
   constexpr std::size_t most = 400'000;  // of quadratic elements some 2 million unknowns
   const double inside = volume(own.mesh, own.mesh.nodes);
   const double edge = r.edge > 0 ? r.edge / r.scale : edge_for(r.tetrahedra, inside);
-  const double coarsest = std::cbrt(6 * std::sqrt(2) * inside / static_cast<double>(own.mesh.tetrahedra.size()));
+  const double coarsest = edge_of_regular(inside, static_cast<double>(own.mesh.tetrahedra.size()));
   const auto times =
       std::max(r.coarser.size(), static_cast<std::size_t>(std::max(0.0, std::round(std::log2(coarsest / edge)))));
   const double finest = static_cast<double>(own.mesh.tetrahedra.size()) * std::pow(8, times);

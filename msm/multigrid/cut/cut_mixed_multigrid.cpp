@@ -146,8 +146,8 @@ void CutMixedMultigrid::Level::set_up_schur() {
 }
 
 void CutMixedMultigrid::Level::set_up_patches() {
-  const Carriers carriers = carriers_of(static_cast<int>(lattice.point.size()), lattice.carried);
   if (lattice.anchors.empty() && lattice.bonds.empty()) return;
+  const Carriers carriers = carriers_of(static_cast<int>(lattice.point.size()), lattice.carried);
   std::vector<std::vector<int>> cells_at(lattice.point.size()), points_of(lattice.corners.size());
   for (std::size_t c = 0; c < lattice.corners.size(); ++c)
     for (const int n : lattice.corners[c])

@@ -76,6 +76,7 @@ TEST(StressError, PeaksAtASingularEdgeHaveNoLimit) {
   };
   EXPECT_FALSE(singular(1, 1.5, 1.75));
   EXPECT_FALSE(singular(1, 1.001, 1.009));      // however it came about
+  EXPECT_FALSE(singular(1, 1.3, 1.15));         // it does not grow
   EXPECT_TRUE(singular(1, std::sqrt(2.0), 2));  // as r^(-1/2)
   EXPECT_TRUE(singular(1, 1.5, 2));             // as a logarithm
 }
