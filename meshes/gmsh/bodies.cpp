@@ -7,17 +7,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <memory>
-#include <optional>
 
 #include "meshes/gmsh/file_kind.h"
 #include "meshes/gmsh/read_mesh.h"
-#include "meshes/locate/facet_tree.h"
 #include "meshes/mesher/mesher_exchange.h"
 #include "meshes/mesher/refined_meshes.h"
 #include "meshes/quality.h"
 #include "meshes/surface/balanced.h"
-#include "meshes/surface/raised.h"
 #include "meshes/volume.h"
 
 namespace springproof {
@@ -137,89 +133,90 @@ MeshedBody of_solid(MeshedBody body, double volume) {
   return body;
 }
 
-/// Turns triangles of the body's surface as the facets of a mesh beside them.
-void turn_outward(const Mesh& mesh, Surface& surface) {
-  const std::vector<OuterFacet> facets = outer_facets(mesh);
-  const FacetTree tree(mesh, facets);
-  const auto area = [](const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).cross(c - a); };
-  for (auto& [a, b, c] : surface.triangles) {
-    const Vec3 &A = surface.points[a], &B = surface.points[b], &C = surface.points[c];
-    const auto& n = facets[tree.nearest((A + B + C) / 3).facet].nodes;
-    const Vec3 outward = area(mesh.nodes.row(n[0]), mesh.nodes.row(n[1]), mesh.nodes.row(n[2]));
-    if (area(A, B, C).dot(outward) < 0) std::swap(b, c);
+/// Of the edges of the facets on a surface of the model, the points of it above their middles: by the middles of their
+/// parameters or, where those are not near (seams, poles), the nearest.
+/// @param facets tags of the corners, three of each facet
+std::vector<Vec3> above_middles(int surface, const std::vector<std::size_t>& facets) {
+  constexpr double near = 0.25;  // of an edge
+  std::vector<std::size_t> tags;
+  std::vector<double> coordinates, parametric;
+  gmsh::model::mesh::getNodes(tags, coordinates, parametric, 2, surface, true, true);
+  std::map<std::size_t, std::size_t> number;
+  for (std::size_t i = 0; i < tags.size(); ++i) number[tags[i]] = i;
+  std::vector<double> middles, values;
+  std::vector<Vec3> straight;
+  std::vector<double> lengths;
+  for (std::size_t i = 0; i < facets.size(); ++i) {
+    const std::size_t p = number.at(facets[i]), q = number.at(facets[i % 3 < 2 ? i + 1 : i - 2]);
+    for (int c = 0; c < 2; ++c) middles.push_back((parametric[2 * p + c] + parametric[2 * q + c]) / 2);
+    const Vec3 from = Vec3::Map(&coordinates[3 * p]), to = Vec3::Map(&coordinates[3 * q]);
+    straight.push_back((from + to) / 2);
+    lengths.push_back((to - from).norm());
   }
-}
-
-constexpr double finer = 2;  ///< facets of the body's surface than of the finest mesh, before they are cut into four
-
-/// The point of a triangle of six nodes (gmsh's order) with these barycentric coordinates.
-Vec3 on_curved(const std::array<Vec3, 6>& x, const Vec3& w) {
-  Vec3 sum = Vec3::Zero();
-  for (int i = 0; i < 3; ++i) sum += w[i] * (2 * w[i] - 1) * x[i] + 4 * w[i] * w[(i + 1) % 3] * x[3 + i];
-  return sum;
-}
-
-constexpr int quarters[4][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}};
-
-/// Mean height of a triangle of six nodes above a quarter of it, exact for heights of second degree.
-double height_above(const std::array<Vec3, 6>& x, const int (&quarter)[3]) {
-  const Vec3 places[6] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.5, 0.5, 0}, {0, 0.5, 0.5}, {0.5, 0, 0.5}};
-  const auto& [a, b, c] = quarter;
-  const Vec3 n = (x[b] - x[a]).cross(x[c] - x[a]).normalized();
-  double sum = 0;
-  for (const int corner : quarter) {
-    const Vec3 w = (places[a] + places[b] + places[c]) / 6 + places[corner] / 2;
-    sum += (on_curved(x, w) - x[a]).dot(n) / 3;
+  gmsh::model::getValue(2, surface, middles, values);
+  std::vector<Vec3> points;
+  for (std::size_t i = 0; i < straight.size(); ++i) {
+    points.push_back(Vec3::Map(&values[3 * i]));
+    if ((points[i] - straight[i]).norm() < near * lengths[i]) continue;
+    std::vector<double> nearest, at;
+    gmsh::model::getClosestPoint(2, surface, {straight[i].x(), straight[i].y(), straight[i].z()}, nearest, at);
+    points[i] = Vec3::Map(nearest.data());
   }
-  return sum;
+  return points;
 }
 
-/// The triangles around the model's volumes, balanced across the body on which their nodes are:
-/// gmsh's triangles of second order, cut into four.  Outward as the facets of `mesh` beside them.
-/// @throws InputError where gmsh cannot place the nodes.
-Surface curved_surface(const fs::path& file, const GmshSession& session, const Mesh& mesh) {
-  gmsh::model::mesh::generate(2);
-  gmsh::model::mesh::setOrder(2);
-  session.stop_on_error(file);
+/// Mean heights [file's units] of the model's surfaces above the outer facets of the mesh that gmsh just made on them,
+/// exact for heights of second degree; 0 of others.
+std::vector<double> heights_above(const Mesh& mesh, const Surface& outside) {
+  const auto place = [](const Vec3& x) { return std::array{x.x(), x.y(), x.z()}; };
+  std::map<std::array<double, 3>, int> number;
+  for (Eigen::Index n = 0; n < mesh.nodes.rows(); ++n) number[place(mesh.nodes.row(n))] = static_cast<int>(n);
+  const auto sorted = [](std::array<int, 3> facet) {
+    std::sort(facet.begin(), facet.end());
+    return facet;
+  };
+  std::map<std::array<int, 3>, Vec3> rises;  // from a facet to its surface, as a mean
   gmsh::vectorpair volumes, surfaces;
   gmsh::model::getEntities(volumes, 3);
   gmsh::model::getBoundary(volumes, surfaces, true, false, false);
-  std::vector<int> entities;
-  for (const auto& [dimension, tag] : surfaces) entities.push_back(tag);
   std::vector<std::size_t> tags;
   std::vector<double> coordinates, parametric;
   gmsh::model::mesh::getNodes(tags, coordinates, parametric, -1, -1, false, false);
-  Surface surface;
-  std::map<std::size_t, int> number;
-  for (std::size_t i = 0; i < tags.size(); ++i) {
-    number[tags[i]] = static_cast<int>(i);
-    surface.points.emplace_back(coordinates[3 * i], coordinates[3 * i + 1], coordinates[3 * i + 2]);
-  }
-  std::vector<double> heights;
-  for (const ElementBlock& b : elements(2, entities)) {
-    if (b.nodes != 6) refuse(file, fmt::format("gmsh: facets of type '{}'", b.name));
-    for (std::size_t i = 0; i < b.node_tags.size(); i += 6) {
-      std::array<Vec3, 6> x;
-      for (int n = 0; n < 6; ++n) x[n] = surface.points[number.at(b.node_tags[i + n])];
-      for (const auto& quarter : quarters) {
-        surface.triangles.push_back({number.at(b.node_tags[i + quarter[0]]), number.at(b.node_tags[i + quarter[1]]),
-                                     number.at(b.node_tags[i + quarter[2]])});
-        heights.push_back(height_above(x, quarter));
+  std::map<std::size_t, Vec3> at;
+  for (std::size_t i = 0; i < tags.size(); ++i) at[tags[i]] = Vec3::Map(&coordinates[3 * i]);
+  for (const auto& [dimension, surface] : surfaces)
+    for (const ElementBlock& b : elements(2, {surface})) {
+      if (b.nodes != 3) continue;
+      const std::vector<Vec3> above = above_middles(surface, b.node_tags);
+      for (std::size_t i = 0; i < b.node_tags.size(); i += 3) {
+        std::array<int, 3> facet;
+        Vec3 rise = Vec3::Zero();
+        for (int c = 0; c < 3; ++c) {
+          const Vec3 &from = at.at(b.node_tags[i + c]), &to = at.at(b.node_tags[i + (c + 1) % 3]);
+          rise += (above[i + c] - (from + to) / 2) / 3;
+          const auto found = number.find(place(from));
+          facet[c] = found == number.end() ? -1 : found->second;
+        }
+        rises[sorted(facet)] = rise;
       }
     }
+  std::vector<double> heights;
+  for (const auto& [a, b, c] : outside.triangles) {
+    const Vec3 &A = outside.points[a], &B = outside.points[b], &C = outside.points[c];
+    const auto found = rises.find(sorted({a, b, c}));
+    heights.push_back(found == rises.end() ? 0 : found->second.dot((B - A).cross(C - A).normalized()));
   }
-  surface = raised(surface, heights);
-  turn_outward(mesh, surface);
-  return surface;
+  return heights;
 }
 
 /// Moves the outer nodes so that the facets are balanced across the body's surface; back where a cell would lose most
 /// of its volume.
-void balance(const Surface& body, Mesh& mesh) {
+void balance(Mesh& mesh) {
   constexpr double least = 0.25;
   const Mesh before = mesh;
-  const Surface outside = balanced(outside_of(mesh), body);
-  for (Eigen::Index n = 0; n < mesh.nodes.rows(); ++n) mesh.nodes.row(n) = outside.points[n].transpose();
+  const Surface outside = outside_of(mesh);
+  const Surface moved = balanced(outside, heights_above(mesh, outside));
+  for (Eigen::Index n = 0; n < mesh.nodes.rows(); ++n) mesh.nodes.row(n) = moved.points[n].transpose();
   const Eigen::VectorXd whole = cell_volumes(before, before.nodes);
   for (bool any = true; any;) {
     any = false;
@@ -233,6 +230,14 @@ void balance(const Surface& body, Mesh& mesh) {
   }
 }
 
+/// Tetrahedra of the opened model with facets that are balanced across its surfaces.
+OneMesh balanced_mesh(const MeshRequest& r, const GmshSession& session, double edge) {
+  OneMesh made{{}, {}, edge};
+  made.mesh = fill_with_tetrahedra(r, session, made.notes);
+  balance(made.mesh);
+  return made;
+}
+
 void draw_with(double edge, double drawn) {
   gmsh::model::mesh::clear();
   gmsh::option::setNumber("Mesh.MeshSizeFactor", edge / drawn);
@@ -242,27 +247,7 @@ void draw_with(double edge, double drawn) {
 MeshAt model_at(const MeshRequest& r, const GmshSession& session, double drawn) {
   return [&r, &session, drawn](double edge, double) {
     draw_with(edge, drawn);
-    OneMesh made{{}, {}, edge};
-    made.mesh = fill_with_tetrahedra(r, session, made.notes);
-    return made;
-  };
-}
-
-/// The same, their facets balanced across the model's surface.
-MeshAt balanced_at(const MeshRequest& r, const GmshSession& session, double drawn) {
-  const auto surface = std::make_shared<std::optional<Surface>>();
-  const auto chords = std::make_shared<std::string>();  // why the facets stay chords
-  return [&r, &session, drawn, surface, chords, plain = model_at(r, session, drawn)](double edge, double times) {
-    OneMesh made = plain(edge, times);
-    if (!*surface && chords->empty()) try {
-        draw_with(r.edge / finer, drawn);
-        *surface = curved_surface(r.file, session, made.mesh);
-      } catch (const InputError& e) {
-        *chords = fmt::format("facets are chords of curved surfaces: {}", e.what());
-      }
-    if (*surface) balance(**surface, made.mesh);
-    if (!chords->empty()) made.notes.push_back(*chords);
-    return made;
+    return balanced_mesh(r, session, edge);
   };
 }
 
@@ -279,9 +264,7 @@ MeshAt script_at(const MeshRequest& r) {
     own.edge = edge;
     GmshSession session(parameters_of(own));
     open_script(own, session);
-    OneMesh made{{}, {}, edge};
-    made.mesh = fill_with_tetrahedra(r, session, made.notes);
-    return made;
+    return balanced_mesh(r, session, edge);
   };
 }
 
@@ -391,7 +374,7 @@ MeshedBody mesh_solid(const MeshRequest& request) {
     gmsh::model::setPhysicalName(2, group, fmt::format("surface_{}", ++number));
   }
   want_edge(r.edge / r.scale);
-  return of_solid(mesh_refined(r, balanced_at(r, session, r.edge)), volume);
+  return of_solid(mesh_refined(r, model_at(r, session, r.edge)), volume);
 }
 
 MeshedBody mesh_file(const MeshRequest& r) try {

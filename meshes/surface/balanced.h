@@ -1,6 +1,8 @@
 // Facets that lie as much inside of a curved surface as outside of it.
 #pragma once
 
+#include <vector>
+
 #include "meshes/surface/surface.h"
 
 namespace springproof {
@@ -12,5 +14,8 @@ namespace springproof {
 /// @param surface outward, its points near that of the body
 /// @param body outward
 Surface balanced(const Surface& surface, const Surface& body);
+
+/// The same, by the mean heights of the body above the facets, along their normals.
+Surface balanced(const Surface& surface, const std::vector<double>& heights);
 
 }  // namespace springproof
