@@ -235,15 +235,17 @@ void solve_into(Solution& solution, const GridProblem& problem, const Body3& bod
 
 Mesh refined_locally(GridProblem problem, double times_cells) {
   constexpr double shortest = 1. / 64;  // edge that is left, over the mean one
+  constexpr double growth = 1.5;        // of the cells by one estimate
   Mesh& mesh = problem.coarse;
   if (problem.degree != 2 || mesh.tetrahedra.empty()) return mesh;
   if (process_count() > 1) throw InputError("tetrahedra are cut by one process");
   dealii::MultithreadInfo::set_thread_limit(1);
   const double cells = double(mesh.tetrahedra.size()), edge = edge_of_regular(volume(mesh, mesh.nodes), cells);
-  const auto enough = std::size_t(times_cells * cells);
   problem.law = "linear";
   problem.tolerance = 1e-3;
-  while (mesh.tetrahedra.size() < enough) {
+  const int rounds = int(std::ceil(std::log(times_cells) / std::log(growth)));
+  for (int round = 1; round <= rounds; ++round) {
+    const auto enough = std::size_t(std::pow(times_cells, double(round) / rounds) * cells);
     progress::detail(fmt::format("{} tetrahedra, where their error is", mesh.tetrahedra.size()));
     const auto body = triangulate(mesh, 0, problem.place);
     dealii::DoFHandler<3> dof_handler(body->triangulation);
@@ -253,9 +255,7 @@ Mesh refined_locally(GridProblem problem, double times_cells) {
     if (!solve_linear(problem, Discrete(problem, *body, dof_handler), u, coarse).converged)
       throw std::runtime_error("where tetrahedra are to be cut: " + coarse.message);
     u.update_ghost_values();
-    Mesh cut = cut_where_errors_are_largest(mesh, *body, dof_handler, u, enough, shortest * edge);
-    if (cut.tetrahedra.size() == mesh.tetrahedra.size()) break;
-    mesh = std::move(cut);
+    mesh = cut_where_errors_are_largest(mesh, *body, dof_handler, u, enough, shortest * edge);
   }
   return mesh;
 }

@@ -10,8 +10,6 @@
 namespace springproof::fem {
 namespace {
 
-constexpr double cut_share = 0.6;  // of the squared error
-
 using Strain = dealii::SymmetricTensor<2, 3>;
 
 struct CornerStrains {
@@ -89,10 +87,8 @@ Mesh cut_where_errors_are_largest(const Mesh& mesh, const Body3& body, const dea
   std::vector<std::size_t> order(errors.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return errors[a] > errors[b]; });
-  double left = cut_share * std::accumulate(errors.begin(), errors.end(), 0.0);
   for (const std::size_t c : order) {
-    if (!(left > 0) || cut.cells() >= most) break;
-    left -= errors[c];
+    if (!(errors[c] > 0) || cut.cells() >= most) break;
     const auto [a, b] = longest_edge(cut, mesh.tetrahedra[c]);
     cut.refine(a, b);
   }
