@@ -28,15 +28,18 @@ struct Field {
   double volume_change_first_order = 0;  ///< integral of div u / V [1]
 };
 
+/// Values at nodes by name, one row per node.
+using NodalFields =
+    std::vector<std::pair<std::string, Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>>;
+
 /// Numbers by name.
 using NamedNumbers = std::vector<std::pair<std::string, std::vector<double>>>;
 
-/// Writes a VTU (VTK XML, compressed binary): displacement, `extra` nodal vectors (e.g. difference to FEM), the
+/// Writes a VTU (VTK XML, compressed binary): displacement, `extra` values at nodes (e.g. difference to FEM), the
 /// relative volume change of each cell, and `of_cells`, one number per cell.
 /// @throws std::runtime_error if the file cannot be written; std::invalid_argument if the sizes do not fit.
-void write_vtu(const std::filesystem::path& file, const Field& field,
-               const std::vector<std::pair<std::string, NodalVectors>>& extra = {}, const VtuNotes& notes = {},
-               const NamedNumbers& of_cells = {});
+void write_vtu(const std::filesystem::path& file, const Field& field, const NodalFields& extra = {},
+               const VtuNotes& notes = {}, const NamedNumbers& of_cells = {});
 
 /// Writes a ParaView collection: the time [s], or Poisson's ratio, and the name of each VTU file of a series, beside
 /// which it lies.

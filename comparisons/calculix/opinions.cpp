@@ -112,6 +112,8 @@ Opinion opinion(const Question& q, const std::vector<Answer>& answers, const Noi
   return out;
 }
 
+/// By rank: whichever shapes cross, the k-th frequency of a mesh converges to the k-th of the body (min-max principle),
+/// and the program's shapes are not read.
 std::map<std::string, double> values_of(const std::vector<double>& frequencies, int modes) {
   std::map<std::string, double> values;
   for (int m = 0; m < std::min<int>(modes, static_cast<int>(frequencies.size())); ++m)

@@ -158,7 +158,7 @@ nlohmann::json json_of(const FrequencyTable& t) {
 
 void write_shapes(const fs::path& file, const FrequencyTable& t, const ModeSet& modes) {
   if (modes.shapes.empty()) return;
-  std::vector<std::pair<std::string, NodalVectors>> shapes;
+  NodalFields shapes;
   for (std::size_t i = 0; i < modes.shapes.size(); ++i)
     shapes.emplace_back(fmt::format("mode {:02} {:.5g} Hz", i + 1, modes.frequencies[i]), modes.shapes[i]);
   const NodalVectors rest = NodalVectors::Zero(t.lattice->mesh->nodes.rows(), 3);

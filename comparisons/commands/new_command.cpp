@@ -167,8 +167,9 @@ std::string case_of(const Measured& m, const MeshRequest& request, const std::st
   text += fmt::format("[material]\nyoungs_modulus_Pa = {:g}\npoisson_ratio = {:g}\ndensity_kg_m3 = {:g}\n\n",
                       material.youngs_modulus, material.poisson_ratio, material.density);
   text += loads_of(m, material) + "\n";
-  text += "[compare]\nmodels = [\"hybmss_avg\", \"hybmss\", \"emsm\", \"msm_18\"]\n";
-  return text;
+  return text +
+         "[compare]\nmodels = [\"hybmss_avg\", \"hybmss\", \"emsm\", \"msm_18\"]\n"
+         "# measures = [\"displacement_error\", \"reaction\", \"stress_error\", \"stress_peak\"]\n";
 }
 
 }  // namespace

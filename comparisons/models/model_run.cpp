@@ -14,8 +14,8 @@
 #include "comparisons/prepare/sampling.h"
 #include "comparisons/prepare/voxel_body.h"
 #include "comparisons/reference/reference_grids.h"
+#include "msm/laws/capabilities.h"
 #include "msm/measure/block_moduli.h"
-#include "msm/measure/promised_error.h"
 #include "msm/measure/statistics.h"
 #include "msm/models.h"
 #include "msm/parameters/calibrate.h"
@@ -31,10 +31,10 @@ bool asked(const Experiment& e, const std::string& measure) {
   return std::find(e.measures.begin(), e.measures.end(), measure) != e.measures.end();
 }
 
-/// Whether the case measures stresses, and this model has them: averaged springs of one material at small strain.
+/// Whether the case measures stresses, and this model has them.
 bool recovers_stress(const Experiment& e, const MassSpringModel& model) {
-  return (asked(e, "stress") || asked(e, "stress_error") || asked(e, "stress_peak")) && averaged_springs_of(model) &&
-         e.regions.empty() && e.model_kinematics() == Kinematics::linear;
+  return (asked(e, "stress") || asked(e, "stress_error") || asked(e, "stress_peak")) &&
+         can(model, Capability::recovered_stress) && e.model_kinematics() == Kinematics::linear;
 }
 
 /// The papers' moduli of a block stretched along x; lengths of the local fields follow from the network's spacing.
@@ -180,7 +180,7 @@ ModelSample measured(const PreparedCase& prepared, const Lattice& lattice, const
           : at_measured_points(prepared, lattice, sample.field.displacement));
   if (cut && averaged_springs_of(built.model) && asked(e, "promised_error") && !in_motion)
     sample.scalars["promised_error"] = cell_energies(built.model, sample.state.displacement).promised_error();
-  if (recovers_stress(e, built.model) && !in_motion)
+  if (recovers_stress(e, built.model) && !in_motion && (cut || network.cells.corners == mesh->hexahedra))
     sample.stress = recovered_stress(built.model, sample.state.displacement);
   const bool by_material = !network.cells.materials.empty();
   if (by_material && asked(e, "region"))

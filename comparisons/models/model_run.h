@@ -1,7 +1,6 @@
 // One spring model on one lattice at one material: solved, over all its seeds, and measured.
 #pragma once
 
-#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -10,6 +9,7 @@
 #include "comparisons/models/motion_run.h"
 #include "comparisons/prepare/prepared_case.h"
 #include "comparisons/results/records.h"
+#include "msm/measure/promised_error.h"
 #include "msm/statics/equilibrium.h"
 #include "problem/system/run_cost.h"
 
@@ -24,7 +24,7 @@ struct ModelSample {
   std::optional<LineRecord> line;           ///< where the case has one
   MotionRecord motion;                      ///< empty: the model is solved for its equilibrium
   std::optional<Stability> stability = {};  ///< of a lattice of cells
-  std::array<NodalVectors, 2> stress = {};  ///< recovered_stress(), where the case compares it and the model has it
+  NodalStresses stress = {};                ///< recovered_stress(), where the case compares it and the model has it
 };
 
 /// A model of a case on one of its lattices, with what was solved.

@@ -9,6 +9,9 @@
 
 #include "comparisons/judge/judge.h"
 #include "comparisons/judge/measures.h"
+#include "msm/exchange/springs_file.h"
+#include "msm/laws/capabilities.h"
+#include "problem/case_file/external.h"
 #include "problem/case_file/measures.h"
 #include "problem/system/nearest_name.h"
 
@@ -25,18 +28,23 @@ void check_expectations(const Experiment& experiment) {
   }
 }
 
+/// Names of the models that can.
+static std::vector<std::string> able(Capability what) {
+  std::vector<std::string> names;
+  for (const ModelRow& row : model_table())
+    if (can(row, what)) names.push_back(row.name);
+  return names;
+}
+
 void check_kinematics(const Experiment& e, const std::vector<ModelParameters>& models) {
   if (e.model_kinematics() == Kinematics::linear) return;
-  std::vector<std::string> able;
-  for (const ModelRow& row : model_table())
-    if (can(row, Capability::large_displacements)) able.push_back(row.name);
   for (std::size_t m = 0; m < models.size(); ++m)
     if (const ModelRow& row = models[m].row; !can(row, Capability::large_displacements))
       throw InputError(
           e.models[m].where,
           fmt::format(
               "compare.models: {} holds under kinematics = \"linear\" only, and the case has \"{}\" (allowed: {})",
-              row.name, e.kinematics, fmt::join(able, ", ")));
+              row.name, e.kinematics, fmt::join(able(Capability::large_displacements), ", ")));
 }
 
 void check_mean_displacements(const Experiment& e, const std::vector<std::string>& patches) {
@@ -49,6 +57,25 @@ void check_mean_displacements(const Experiment& e, const std::vector<std::string
   for (const Expectation& x : e.expectations) check(x.measure, x.location);
   for (const PublishedValue& v : e.published) check(v.measure, v.location);
   for (const MeasuredValue& m : e.measured) check(m.quantity, m.where);
+}
+
+static bool has_stresses(const Experiment& e, const std::string& model, const std::vector<ModelParameters>& models) {
+  const auto at = std::ranges::find(e.models, model, &ModelChoice::label);
+  if (at == e.models.end()) return !(e.body.is_voxels() && model.starts_with("fem_q"));
+  const ModelParameters& p = models[at - e.models.begin()];
+  if (is_external(*at) || at->in_motion || p.coarsened.value_or(false)) return false;
+  if (p.cut.value_or(false)) return true;  // averaged springs, all of them
+  return p.springs ? can(p.springs->model, Capability::recovered_stress) : can(p.row, Capability::recovered_stress);
+}
+
+void check_stresses(const Experiment& e, const std::vector<ModelParameters>& models) {
+  for (const Expectation& x : e.expectations)
+    if (x.measure.starts_with("stress") && !has_stresses(e, x.model, models))
+      throw InputError(
+          x.location,
+          fmt::format("measure: '{}' is not known of '{}' (allowed: of {}, and in cut cells of all lattices, "
+                      "at rest and not coarsened; of elements, but not on the cubes of a body of voxels)",
+                      x.measure, x.model, fmt::join(able(Capability::recovered_stress), ", ")));
 }
 
 namespace {
@@ -125,9 +152,10 @@ void check_supports(const Experiment& e, const Mesh& surface) {
         throw InputError(
             where(e, i),
             fmt::format(
-                "load: '{}' has the displacement {} = {:.6g} m at ({:.6g}, {:.6g}, {:.6g}) m, where '{}' of the "
-                "load in line {} has {:.6g} m (allowed: one displacement at each place of the surface)",
-                name, "xyz"[d], *value[d], X[0], X[1], X[2], *patch_of(e.loads[load]), where(e, load).line, u));
+                "load: '{}' has the displacement {} = {} at {}, where '{}' of the load in line {} has {} (allowed: one "
+                "displacement at each place of the surface)",
+                name, "xyz"[d], text(*value[d], e.units), text(X, e.units), *patch_of(e.loads[load]),
+                where(e, load).line, text(u, e.units)));
       }
     }
   }

@@ -23,4 +23,7 @@ void check_mean_displacements(const Experiment& experiment, const std::vector<st
 ///   only where others hold the body; `surface`: mesh of the body with its patches.
 void check_supports(const Experiment& experiment, const Mesh& surface);
 
+/// @throws InputError for an [[expect]] of stresses that are not recovered of its model.
+void check_stresses(const Experiment& experiment, const std::vector<ModelParameters>& models);
+
 }  // namespace springproof

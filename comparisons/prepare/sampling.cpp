@@ -61,15 +61,8 @@ NodalVectors at_lattice_nodes(const PreparedCase& prepared, const NodalVectors& 
   return out;
 }
 
-NodalVectors at_measured_points(const PreparedCase& prepared, const Lattice& lattice,
-                                const NodalVectors& displacement) {
-  const Experiment& e = prepared.experiment;
-  const Mesh& mesh = *lattice.mesh;
-  if (!e.body.is_voxels()) interpolate(mesh, displacement, probe_points(e));  // throws for a probe outside
-  return at_points(mesh, displacement, measured_points(prepared));
-}
-
-NodalVectors at_points(const Mesh& mesh, const NodalVectors& of_nodes, const NodalVectors& points) {
+/// Beyond the mesh the nearest cell is extrapolated.
+static NodalVectors at_points(const Mesh& mesh, const NodalVectors& of_nodes, const NodalVectors& points) {
   const Locator locator(mesh);
   NodalVectors out = NodalVectors::Zero(points.rows(), 3);
   for (Eigen::Index i = 0; i < points.rows(); ++i) {
@@ -77,6 +70,14 @@ NodalVectors at_points(const Mesh& mesh, const NodalVectors& of_nodes, const Nod
     for (int n = 0; n < 8; ++n) out.row(i) += at.shape[n] * of_nodes.row(mesh.hexahedra[at.cell][n]);
   }
   return out;
+}
+
+NodalVectors at_measured_points(const PreparedCase& prepared, const Lattice& lattice,
+                                const NodalVectors& displacement) {
+  const Experiment& e = prepared.experiment;
+  const Mesh& mesh = *lattice.mesh;
+  if (!e.body.is_voxels()) interpolate(mesh, displacement, probe_points(e));  // throws for a probe outside
+  return at_points(mesh, displacement, measured_points(prepared));
 }
 
 namespace {
@@ -119,8 +120,10 @@ NodalVectors stress_points(const PreparedCase& prepared) {
 
 NodalVectors requested_stress_points(const PreparedCase& prepared) {
   const Experiment& e = prepared.experiment;
-  const bool between_nodes = cells_of_stresses(prepared) && !e.body.is_voxels() && !e.models.empty();
-  return stacked(stress_points(prepared), between_nodes ? lattice_points(prepared) : NodalVectors(0, 3));
+  NodalVectors points = stress_points(prepared);
+  if (cells_of_stresses(prepared) && !e.body.is_voxels() && !e.models.empty())
+    for (const Lattice& lattice : prepared.lattices) points = stacked(points, middles(lattice.mesh.get()));
+  return points;
 }
 
 Eigen::VectorXd stress_volumes(const PreparedCase& prepared) {

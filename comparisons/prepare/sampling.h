@@ -35,15 +35,12 @@ NodalVectors at_lattice_nodes(const PreparedCase& prepared, const NodalVectors& 
 /// @throws InputError naming a probe outside the body.
 NodalVectors at_measured_points(const PreparedCase& prepared, const Lattice& lattice, const NodalVectors& displacement);
 
-/// Nodal values of a mesh of hexahedra at points; beyond it the nearest cell is extrapolated.
-NodalVectors at_points(const Mesh& mesh, const NodalVectors& of_nodes, const NodalVectors& points);
-
 /// Rest positions at which stresses are requested: the probes, if the case measures them there, the middles of cells
 /// all over the body, if it compares them, then the surface that is pictured.
 NodalVectors stress_points(const PreparedCase& prepared);
 
-/// Where the finite elements are asked for them: there, then of a block whose stresses are compared at the nodes of all
-/// lattices, so that those of linear elements can be averaged at nodes.
+/// Where the finite elements are asked for them: there, then of a block whose stresses are compared in the middles of
+/// all lattices' cells, so that those of linear elements can be averaged at nodes.
 NodalVectors requested_stress_points(const PreparedCase& prepared);
 
 /// How many of stress_points() are probes.

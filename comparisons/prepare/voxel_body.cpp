@@ -60,13 +60,13 @@ std::string scale_hint(const Mesh& mesh, const Body& body) {
 }
 
 /// Where the body is, and how large.
-std::string size_note(const Mesh& body) {
-  const Vec3 low = body.nodes.colwise().minCoeff().transpose(), high = body.nodes.colwise().maxCoeff().transpose(),
-             size = high - low;
-  return fmt::format(
-      "the body is {:.4g} x {:.4g} x {:.4g} m, from ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}) "
-      "m, and of {:.6g} m³",
-      size[0], size[1], size[2], low[0], low[1], low[2], high[0], high[1], high[2], volume(body, body.nodes));
+std::string size_note(const Mesh& body, Units units) {
+  const Vec3 low = body.nodes.colwise().minCoeff().transpose(), high = body.nodes.colwise().maxCoeff().transpose();
+  const Named unit = unit_in(units, "m");
+  const Vec3 size = (high - low) / unit.in_si;
+  return fmt::format("the body is {:.4g} x {:.4g} x {:.4g} {}, from {} to {}, and of {:.6g} {}³", size[0], size[1],
+                     size[2], unit.name, text(low, units), text(high, units),
+                     volume(body, body.nodes) / std::pow(unit.in_si, 3), unit.name);
 }
 
 /// Edges of a mesh over those of the finest one.
@@ -108,7 +108,7 @@ void mesh_the_body(MeshRequest request, PreparedCase& prepared, std::string& hin
   const bool alone = e.reference.elements.empty() && !e.reference.in_time;
   if (!alone) request.coarser = {reference_ratios.begin(), reference_ratios.end()};
   MeshedBody body = alone ? mesh_to_cut(request) : mesh_body(request);
-  prepared.body.notes = {size_note(body.mesh)};
+  prepared.body.notes = {size_note(body.mesh, prepared.experiment.units)};
   prepared.body.notes.insert(prepared.body.notes.end(), body.notes.begin(), body.notes.end());
   hint = scale_hint(body.mesh, e.body);
   if (!hint.empty()) prepared.body.notes.push_back(hint);
@@ -324,6 +324,7 @@ double bulge(const Mesh& body, const std::vector<OuterFacet>& facets, std::size_
 /// @throws InputError naming a probe that is further outside than half a cube.
 void check_probes(PreparedCase& prepared) {
   const Mesh& body = *prepared.body.tetrahedra.back();
+  const Units units = prepared.experiment.units;
   const std::vector<OuterFacet> facets = outer_facets(body);
   const FacetTree tree(body, facets);
   const auto finer = [](const Lattice& a, const Lattice& b) { return a.voxel_edge < b.voxel_edge; };
@@ -332,12 +333,12 @@ void check_probes(PreparedCase& prepared) {
     if (prepared.lattices.front().region->inside(p.at)) continue;
     const auto [facet, point, distance] = tree.nearest(p.at);
     if (distance > 1e-6 * prepared.body.size.norm() + bulge(body, facets, facet))
-      prepared.body.notes.push_back(
-          fmt::format("probe '{}' lies {:.3g} m outside the body: its displacement is extrapolated", p.name, distance));
+      prepared.body.notes.push_back(fmt::format("probe '{}' lies {} outside the body: its displacement is extrapolated",
+                                                p.name, text(distance, units, "m", 3)));
     if (distance > slack)
-      throw InputError(fmt::format(
-          "probe '{}': at_m: the point ({:.6g}, {:.6g}, {:.6g}) m lies outside the body, {:.3g} m from its surface; {}",
-          p.name, p.at[0], p.at[1], p.at[2], distance, size_note(body)));
+      throw InputError(fmt::format("probe '{}': {}: the point {} lies outside the body, {} from its surface; {}",
+                                   p.name, key_in(units, "at_m").name, text(p.at, units), text(distance, units, "m", 3),
+                                   size_note(body, units)));
   }
 }
 

@@ -7,7 +7,9 @@
 #include <memory>
 #include <vector>
 
+#include "comparisons/judge/stress_error.h"
 #include "meshes/field.h"
+#include "meshes/voxels/cells_apart.h"
 #include "problem/files/file_name.h"
 
 namespace springproof {
@@ -27,24 +29,27 @@ VtuNotes vtu_notes(const std::string& case_name, const RunKey& key, double young
           single};
 }
 
+NodalFields stress_fields(const NodalStresses& stress) {
+  return {{"stress", stress}, {"von_mises", invariants(stress).col(0)}};
+}
+
 void write_cells(const std::filesystem::path& file, const CutBody& cut, const NodalVectors& displacement,
-                 const VtuNotes& notes, const std::array<NodalVectors, 2>& stress) {
+                 const VtuNotes& notes, const NodalStresses& stress) {
   const auto mesh = std::make_shared<Mesh>();
-  mesh->nodes = cut.points;
   std::vector<double> filled, edge, material;
   for (const CutCell& cell : cut.cells) {
-    mesh->hexahedra.push_back(cell.corners);
     filled.push_back(cell.filled.fraction);
     edge.push_back(cell.size * cut.grid.edge);
     material.push_back(cell.material);
   }
+  CellsApart parts = apart(cut);
+  mesh->hexahedra = std::move(parts.corners);
+  mesh->nodes = cut.points(parts.node, Eigen::all);
   Field field;
   field.mesh = mesh;
-  field.displacement = displacement.topRows(cut.points.rows());
-  std::vector<std::pair<std::string, NodalVectors>> extra;
-  if (stress[0].rows() > 0)
-    extra = {{"normal_stress", stress[0].topRows(cut.points.rows())},
-             {"shear_stress", stress[1].topRows(cut.points.rows())}};
+  field.displacement = displacement(parts.node, Eigen::all);
+  NodalFields extra;
+  if (stress.rows() > 0) extra = stress_fields(stress);
   write_vtu(file, field, extra, notes, {{"filled_fraction", filled}, {"edge_m", edge}, {"material", material}});
 }
 

@@ -54,20 +54,23 @@ void add_stressless(const CaseResult& result, std::vector<std::string>& out) {
   const auto of_stress = [](const auto& record) { return record.measure.starts_with("stress"); };
   const auto errors = [](const auto& record) { return record.measure.starts_with("stress_error"); };
   if (std::none_of(result.references.begin(), result.references.end(), errors)) return;
-  std::vector<std::string> labels;
-  for (const ModelChoice& model : result.experiment.models) {
-    const auto own = [&](const Row& row) { return row.model == model.label; };
+  std::vector<std::string> labels, all;
+  for (const ModelChoice& model : result.experiment.models) all.push_back(model.label);
+  for (const std::string& element : result.experiment.elements) all.push_back("fem_" + element);
+  for (const std::string& label : all) {
+    const auto own = [&](const Row& row) { return row.model == label; };
     if (std::any_of(result.rows.begin(), result.rows.end(), own) &&
         std::none_of(result.rows.begin(), result.rows.end(), [&](const Row& r) { return own(r) && of_stress(r); }))
-      labels.push_back(model.label);
+      labels.push_back(label);
   }
   const std::vector<std::string>& measures = result.experiment.measures;
   const auto asked =
       std::find_if(measures.begin(), measures.end(), [](const auto& m) { return m.starts_with("stress"); });
   if (asked != measures.end() && !labels.empty())
     out.push_back(fmt::format(
-        "no {} of {}: stresses are recovered from averaged springs (hybmss_avg, and lattices in cut cells) of one "
-        "material at rest and small strain alone",
+        "no {} of {}: stresses are recovered from averaged springs (hybmss_avg, and lattices in cut cells) at rest and "
+        "small strain, and from elements that end at the surface of the body (not from cubes of one that has other "
+        "faces)",
         *asked, fmt::join(labels, ", ")));
 }
 

@@ -7,20 +7,22 @@
 #include "comparisons/results/records.h"
 
 namespace springproof {
+
+std::string text(double x, Units units, const char* si, int digits) {
+  const Named unit = unit_in(units, si);
+  return fmt::format("{:.{}g} {}", x / unit.in_si, digits, unit.name);
+}
+
+static std::string text(const Vec3& v, int digits = 6) {
+  return fmt::format("({:.{}g}, {:.{}g}, {:.{}g})", v.x(), digits, v.y(), digits, v.z(), digits);
+}
+
+std::string text(const Vec3& v, Units units, const char* si, int digits) {
+  const Named unit = unit_in(units, si);
+  return fmt::format("{} {}", text(Vec3(v / unit.in_si), digits), unit.name);
+}
+
 namespace {
-
-std::string text(const Vec3& v) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", v.x(), v.y(), v.z()); }
-
-/// With the unit that stands for this one of SI.
-std::string text(double x, Units units, const char* si) {
-  const Named unit = unit_in(units, si);
-  return fmt::format("{:.6g} {}", x / unit.in_si, unit.name);
-}
-
-std::string text(const Vec3& v, Units units, const char* si) {
-  const Named unit = unit_in(units, si);
-  return fmt::format("{} {}", text(Vec3(v / unit.in_si)), unit.name);
-}
 
 std::string components(const std::vector<std::string>& axes) {
   if (axes.size() < 2) return axes.empty() ? "" : axes[0];

@@ -88,16 +88,6 @@ NodalVectors pictured_points(const Mesh& mesh) {
   return mesh.nodes(nodes, Eigen::all);
 }
 
-std::vector<float> von_mises(
-    const Eigen::Ref<const Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>>& stress) {
-  std::vector<float> out;
-  for (const auto& s : stress.rowwise()) {
-    const double apart = std::pow(s[0] - s[1], 2) + std::pow(s[1] - s[2], 2) + std::pow(s[2] - s[0], 2);
-    out.push_back(static_cast<float>(std::sqrt(apart / 2 + 3 * s.tail<3>().squaredNorm())));
-  }
-  return out;
-}
-
 Picture smooth_picture(const RunKey& key, const Field& field, const Mesh& body, const NodalVectors* truth) {
   Picture p{key, {}, {}, {}, {}, {}, "smooth"};
   const Eigen::VectorXd volume_change = nodal_volume_change(field);

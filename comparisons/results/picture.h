@@ -19,7 +19,4 @@ Picture smooth_picture(const RunKey& key, const Field& field, const Mesh& body, 
 /// Rest positions of the nodes of a picture of this mesh, in its order.
 NodalVectors pictured_points(const Mesh& mesh);
 
-/// Of xx yy zz xy yz xz in a row [Pa].
-std::vector<float> von_mises(const Eigen::Ref<const Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>>& stress);
-
 }  // namespace springproof

@@ -322,6 +322,10 @@ std::string describe(const Load& load, Kinematics kinematics = Kinematics::linea
 /// A mass likewise: "weight: 0.05 kg at (0.1, 0, 0.03) m".
 std::string describe(const AttachedMass& mass, Units units = Units::m);
 
+/// "12.5 mm", "(1, 2, 3) mm": what is given in a unit of SI, in that of the case.
+std::string text(double quantity, Units units, const char* si = "m", int digits = 6);
+std::string text(const Vec3& quantity, Units units, const char* si = "m", int digits = 6);
+
 /// How a load is drawn.
 struct LoadMark {
   std::string kind;            ///< "held", "moved", "turned", "force", "pressure", "gravity", "point"; empty: not drawn

@@ -56,8 +56,10 @@ void add_stress_rows(PartRun& run) {
 void record_elements(PartRun& run) {
   for (const ElementGrids& e : run.grids.elements) {
     if (!complete(e)) continue;
-    const std::vector<ReferenceRecord> records = records_of(run.prepared, run.material, e);
-    run.part.references.insert(run.part.references.end(), records.begin(), records.end());
+    for (ReferenceRecord& r : records_of(run.prepared, run.material, e)) {
+      r.cells = solved_cells(e);
+      run.part.references.push_back(std::move(r));
+    }
   }
   if (run.experiment().models.empty())
     run.part.rows = rows_of(run.prepared, run.part.references);
@@ -85,7 +87,7 @@ ReferenceRecord field_record(const PartRun& run, const Lattice& lattice, const s
   ReferenceRecord record{.poisson_ratio = run.setting(),
                          .measure = "displacement_error",
                          .unit = "1",
-                         .cells = {},
+                         .cells = solved_cells(first),
                          .values = {},
                          .observed_order = f.observed_order,
                          .uncertainty = f.uncertainty,
@@ -95,10 +97,8 @@ ReferenceRecord field_record(const PartRun& run, const Lattice& lattice, const s
                          .correlation = f.correlation};
   if (!record.converging) record.note += "; " + cause_and_remedy(run.prepared, run.material, first, record.measure);
   const Eigen::VectorXd volumes = nodal_volumes(*lattice.mesh);
-  for (std::size_t g = 0; g < fields.size(); ++g) {
-    record.cells.push_back(first.grids[g].grid.cells);
-    record.values.push_back(weighted_norm(fields[g] - f.displacement, volumes) / reference.scale.mean);
-  }
+  for (const NodalVectors& field : fields)
+    record.values.push_back(weighted_norm(field - f.displacement, volumes) / reference.scale.mean);
   return record;
 }
 
@@ -138,8 +138,18 @@ void measure_deformation(PartRun& run) {
 
 }  // namespace
 
+Cells solved_cells(const fem::Solution& s) {
+  return is_tetrahedra(s.grid.cells) && s.cells > 0 ? Cells{static_cast<int>(s.cells), 0, 0} : s.grid.cells;
+}
+
+std::vector<Cells> solved_cells(const ElementGrids& e) {
+  std::vector<Cells> cells;
+  for (const fem::Solution& s : e.grids) cells.push_back(solved_cells(s));
+  return cells;
+}
+
 Run fem_run(const PartRun& run, const fem::Solution& s, const std::string& model) {
-  Run record = of_run<Run>(run.key(model, s.grid.cells));
+  Run record = of_run<Run>(run.key(model, solved_cells(s)));
   record.kind = "fem";
   record.kinematics = s.law.empty() ? run.experiment().kinematics : s.law;
   record.ok = s.ok;

@@ -7,6 +7,11 @@
 
 namespace springproof {
 
+/// What was solved: of tetrahedra those after all cuts, where grid.cells holds those before, of which the ratios are.
+Cells solved_cells(const fem::Solution& solution);
+/// Coarse to fine.
+std::vector<Cells> solved_cells(const ElementGrids& grids);
+
 /// What is recorded of a solution.
 Run fem_run(const PartRun& run, const fem::Solution& solution, const std::string& model);
 

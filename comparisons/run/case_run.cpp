@@ -15,6 +15,7 @@
 #include "comparisons/run/model_samples.h"
 #include "comparisons/run/stress_rows.h"
 #include "comparisons/run/varied_runs.h"
+#include "meshes/voxels/cells_apart.h"
 #include "msm/statics/equilibrium.h"
 #include "problem/case_file/external.h"
 #include "problem/case_file/measures.h"
@@ -24,7 +25,7 @@ namespace springproof {
 namespace {
 
 void save(PartRun& run, std::size_t lattice, const std::string& model, const Field& field,
-          const std::array<NodalVectors, 2>& stress = {}) {
+          const NodalStresses& stress = {}) {
   const auto* reference = reference_at_rest(run, lattice, model);
   const NodalVectors* truth = reference ? &reference->field.displacement : nullptr;
   const RunKey key = run.key(model, lattice);
@@ -35,13 +36,20 @@ void save(PartRun& run, std::size_t lattice, const std::string& model, const Fie
       run.part.pictures.push_back(smooth_picture(key, field, *run.prepared.body.tetrahedra.back(), difference_to));
   }
   if (run.vtu.folder.empty()) return;
-  std::vector<std::pair<std::string, NodalVectors>> extra;
+  NodalFields extra;
   if (truth && model != "fem") extra.emplace_back("difference_to_fem", field.displacement - *truth);
-  if (stress[0].rows() == field.displacement.rows()) {  // else those of cut cells
-    extra.emplace_back("normal_stress", stress[0]);
-    extra.emplace_back("shear_stress", stress[1]);
+  Field apart_field = field;
+  if (stress.rows() > 0) {
+    CellsApart parts = apart(field.mesh->hexahedra, field.mesh->materials);
+    const auto mesh = std::make_shared<Mesh>();
+    mesh->nodes = field.mesh->nodes(parts.node, Eigen::all);
+    mesh->hexahedra = std::move(parts.corners);
+    apart_field.mesh = mesh;
+    apart_field.displacement = field.displacement(parts.node, Eigen::all);
+    for (auto& [name, values] : extra) values = values(parts.node, Eigen::all).eval();
+    for (auto& [name, values] : stress_fields(stress)) extra.emplace_back(name, values);
   }
-  write_vtu(run.vtu.folder / (file_stem(key) + ".vtu"), field, extra, run.notes(key));
+  write_vtu(run.vtu.folder / (file_stem(key) + ".vtu"), apart_field, extra, run.notes(key));
   write_file(run.vtu.folder / (file_stem(key) + ".csv"), csv_of(field.mesh->nodes, field.displacement));
 }
 
@@ -95,7 +103,9 @@ std::size_t cells_in_body(const Lattice& lattice, const ModelParameters& paramet
 void add_to_picture(PartRun& run, const ProbeStresses& stress) {
   Picture& p = run.part.pictures.back();
   const auto nodes = static_cast<Eigen::Index>(p.rest.size() / 3);
-  if (stress.rows() >= nodes) p.von_mises = von_mises(stress.bottomRows(nodes));
+  if (stress.rows() < nodes) return;
+  const Eigen::VectorXd of_nodes = invariants(stress.bottomRows(nodes)).col(0);
+  p.von_mises.assign(of_nodes.begin(), of_nodes.end());
 }
 
 /// What is recorded of the run of a sample, with a result or without.
@@ -125,9 +135,10 @@ void add_first_sample(PartRun& run, std::size_t lattice, std::size_t number, con
   const Experiment& e = run.experiment();
   const std::string& label = e.models[number].label;
   const RunKey key = run.key(label, lattice);
-  save(run, lattice, label, sample.field, sample.stress);
+  const bool cut = run.prepared.models[number].cut.value_or(false);  // whose cells have a file of their own
+  save(run, lattice, label, sample.field, cut ? NodalStresses() : sample.stress);
   if (sample.line) static_cast<RunKey&>(run.part.lines.emplace_back(*sample.line)) = key;
-  if (sample.stress[0].rows() > 0) {
+  if (sample.stress.rows() > 0) {
     const ProbeStresses stress = at_stress_points(run, lattice, run.prepared.models[number], sample.stress);
     if (const Eigen::Index probes = stress_probes(run.prepared); probes > 0)
       scalars.merge(stress_measures(e.probes, stress.topRows(probes)));

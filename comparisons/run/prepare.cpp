@@ -399,6 +399,7 @@ PreparedCase prepare_lattices(const Experiment& experiment) {
     check_fracture_models(experiment, prepared.models);
     choose_cut_cells(prepared);
     choose_measured_cells(prepared);
+    check_stresses(experiment, prepared.models);
     check_region_models(prepared);
     check_vertex_options(prepared);
     prepared.body.geo = find_geo(experiment.body, experiment.file);

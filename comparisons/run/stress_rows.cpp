@@ -2,8 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "comparisons/prepare/sampling.h"
+#include "comparisons/run/case_reference.h"
 #include "comparisons/run/case_rows.h"
+#include "meshes/locate/locate.h"
+#include "meshes/voxels/cells_apart.h"
 #include "problem/case_file/measures.h"
 
 namespace springproof {
@@ -14,8 +20,7 @@ std::string error_name(const PartRun& run, int invariant) {
 }
 
 std::string place_of(const PartRun& run) {
-  const Eigen::RowVector3d at = stress_points(run.prepared).row(run.stress->place);
-  return fmt::format("({:.3g}, {:.3g}, {:.3g}) m", at[0], at[1], at[2]);
+  return text(stress_points(run.prepared).row(run.stress->place).transpose(), run.experiment().units, "m", 3);
 }
 
 /// Of each invariant as a share of its size: in the L2 norm, what is known to be off.
@@ -31,7 +36,7 @@ ReferenceRecord blank_record(const PartRun& run, const std::string& measure) {
   record.measure = measure;
   record.unit = unit_of(measure);
   record.element = run.grids.elements.front().element;
-  for (const fem::Solution& s : run.grids.elements.front().grids) record.cells.push_back(s.grid.cells);
+  record.cells = solved_cells(run.grids.elements.front());
   return record;
 }
 
@@ -66,30 +71,52 @@ void record_peak(PartRun& run) {
   run.part.references.push_back(record);
 }
 
+/// Of the nodes of apart() at points; where materials meet of the least.
+/// @param place the cell of a point and the weights of its corners
+template <class Place>
+ProbeStresses at_points(const NodalVectors& points, const NodalStresses& of_nodes, const CellsApart& cells,
+                        const Place& place) {
+  ProbeStresses out = ProbeStresses::Zero(points.rows(), 6);
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    const auto [cell, weights] = place(points.row(i).transpose());
+    const Hexahedron& corners = cells.corners[static_cast<std::size_t>(cell)];
+    bool meet = true;  // all nodes that count are there for a lesser material too
+    for (int n = 0; n < 8; ++n) meet &= std::abs(weights[n]) < 1e-9 || cells.node[corners[n]] != corners[n];
+    for (int n = 0; n < 8; ++n) out.row(i) += weights[n] * of_nodes.row(meet ? cells.node[corners[n]] : corners[n]);
+  }
+  return out;
+}
+
 }  // namespace
 
 ProbeStresses at_stress_points(const PartRun& run, std::size_t lattice, const ModelParameters& parameters,
-                               const std::array<NodalVectors, 2>& of_nodes) {
+                               const NodalStresses& of_nodes) {
   const Lattice& here = run.prepared.lattices[lattice];
+  const Mesh& mesh = *here.mesh;
   const NodalVectors points = stress_points(run.prepared);
-  ProbeStresses out(points.rows(), 6);
-  for (int k = 0; k < 2; ++k)
-    out.middleCols<3>(3 * k) = parameters.cut.value_or(false)
-                                   ? displacement_at(cells_of(here, parameters), of_nodes[k], points)
-                                   : at_points(*here.mesh, of_nodes[k], points);
-  return out;
+  if (!parameters.cut.value_or(false))
+    return at_points(points, of_nodes, apart(mesh.hexahedra, mesh.materials), Locator(mesh));
+  const CutBody& body = cells_of(here, parameters);
+  return at_points(points, of_nodes, apart(body), [&](const Vec3& point) { return body.place(point); });
 }
 
 ProbeStresses at_stress_points(const PartRun& run, std::size_t lattice, const fem::Solution& solution) {
   const Mesh& mesh = run.mesh(lattice);
   const NodalVectors points = stress_points(run.prepared);
-  if (solution.grid.element != "q1" || solution.stress.rows() <= points.rows())
+  const bool is_peer = solution.grid.cells == run.prepared.lattices[lattice].cells;
+  if (solution.grid.element != "q1" || !is_peer || solution.stress.rows() <= points.rows())
     return solution.stress.topRows(std::min(points.rows(), solution.stress.rows()));
-  const ProbeStresses of_nodes =
-      solution.stress.middleRows(points.rows() + run.prepared.lattices[lattice].first_node, mesh.nodes.rows());
-  ProbeStresses out(points.rows(), 6);
-  out << at_points(mesh, of_nodes.leftCols<3>(), points), at_points(mesh, of_nodes.rightCols<3>(), points);
-  return out;
+  Eigen::Index row = points.rows();  // of the middle of its cells
+  for (std::size_t i = 0; i < lattice; ++i) row += static_cast<Eigen::Index>(run.mesh(i).hexahedra.size());
+  const CellsApart cells = apart(mesh.hexahedra, mesh.materials);
+  NodalStresses sum = NodalStresses::Zero(static_cast<Eigen::Index>(cells.node.size()), 6);
+  Eigen::VectorXd count = Eigen::VectorXd::Zero(sum.rows());
+  for (const Hexahedron& cell : cells.corners) {
+    for (const int n : cell) sum.row(n) += solution.stress.row(row);
+    count(cell).array() += 1;
+    ++row;
+  }
+  return at_points(points, sum.array().colwise() / count.array(), cells, Locator(mesh));
 }
 
 void build_stress_limit(PartRun& run, double doubt) {

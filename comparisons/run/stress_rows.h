@@ -1,8 +1,6 @@
 // Stresses at the points where the reference's are requested, and the rows of stress_error and stress_peak.
 #pragma once
 
-#include <array>
-
 #include "comparisons/models/model_run.h"
 #include "comparisons/run/part_run.h"
 
@@ -11,7 +9,7 @@ namespace springproof {
 /// Those of a model on a lattice at stress_points().
 /// @param of_nodes as recovered_stress() gives them
 ProbeStresses at_stress_points(const PartRun& run, std::size_t lattice, const ModelParameters& parameters,
-                               const std::array<NodalVectors, 2>& of_nodes);
+                               const NodalStresses& of_nodes);
 
 /// Those of finite elements on a lattice; of trilinear ones on a block the means at nodes, in which alternating
 /// pressures cancel, and trilinear between them.

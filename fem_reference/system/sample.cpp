@@ -165,7 +165,10 @@ Stresses stress_at(const NodalVectors& points, const ElasticSystem& system, std:
   CellStress stress(system, law, answer, displacement);
   for (std::size_t k = 0; k < places.size(); ++k) {
     if (!places[k].is_here()) continue;
-    const std::vector<Location> cells = cells_around(cache, places[k], points.row(k));
+    std::vector<Location> cells = cells_around(cache, places[k], points.row(k));
+    const auto material = [](const Location& place) { return place.cell->material_id(); };
+    const auto least = std::ranges::min(cells, {}, material).cell->material_id();  // several: of one process
+    std::erase_if(cells, [&](const Location& place) { return material(place) != least; });
     cells_at[k] = double(cells.size());
     Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
     for (const Location& place : cells) sum += weighted(stress.weights(place.unit), stress.at_points(place.cell));
@@ -186,10 +189,21 @@ NodalSolution at_own_nodes(const ElasticSystem& system, std::optional<Law> law, 
   std::vector<std::vector<double>> weights;
   for (const auto& unit : units) weights.push_back(stress.weights(unit));
 
-  std::map<dealii::types::global_dof_index, int> number;  // of a node, by its first degree of freedom
+  // Of a node, by its first degree of freedom and the material.
+  std::map<std::pair<dealii::types::global_dof_index, dealii::types::material_id>, int> number;
   NodalSolution out;
   std::vector<dealii::types::global_dof_index> dofs(fe.n_dofs_per_cell());
-  const auto nodes = static_cast<Eigen::Index>(system.dof_handler.n_dofs() / 3);
+  for (const auto& cell : system.dof_handler.active_cell_iterators()) {
+    cell->get_dof_indices(dofs);
+    if (!system.laws.empty()) out.materials.push_back(cell->material_id());
+    std::vector<int>& own = out.cells.emplace_back();
+    for (unsigned int a = 0; a < units.size(); ++a)
+      own.push_back(number
+                        .try_emplace({dofs[fe.component_to_system_index(0, a)], cell->material_id()},
+                                     static_cast<int>(number.size()))
+                        .first->second);
+  }
+  const auto nodes = static_cast<Eigen::Index>(number.size());
   out.X.resize(nodes, 3);
   out.displacement.resize(nodes, 3);
   out.stress = Stresses::Zero(nodes, 6);
@@ -197,16 +211,10 @@ NodalSolution at_own_nodes(const ElasticSystem& system, std::optional<Law> law, 
   for (const auto& cell : system.dof_handler.active_cell_iterators()) {
     cell->get_dof_indices(dofs);
     const std::vector<Eigen::Matrix3d>& in_cell = stress.at_points(cell);
-    std::vector<int>& own = out.cells.emplace_back();
-    if (!system.laws.empty()) out.materials.push_back(cell->material_id());
     for (unsigned int a = 0; a < units.size(); ++a) {
-      const auto [at, is_new] =
-          number.try_emplace(dofs[fe.component_to_system_index(0, a)], static_cast<int>(number.size()));
-      const int n = at->second;
-      own.push_back(n);
+      const int n = out.cells[cell->active_cell_index()][a];
       out.stress.row(n) += components(weighted(weights[a], in_cell));
       cells_at[n] += 1;
-      if (!is_new) continue;
       const dealii::Point<3> X = system.body.mapping->transform_unit_to_real_cell(cell, units[a]);
       for (int c = 0; c < 3; ++c) {
         out.X(n, c) = X[c];

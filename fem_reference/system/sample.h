@@ -17,11 +17,11 @@ NodalVectors displacement_at(const std::vector<Location>& places, const dealii::
                              const DofVector& displacement);
 
 /// Cauchy stress at rest positions, extrapolated from the superconvergent points of each cell and averaged over the
-/// cells that meet there; without a law, for small strain.
+/// cells that meet there, where materials meet over those of the least; without a law, for small strain.
 Stresses stress_at(const NodalVectors& points, const ElasticSystem& system, std::optional<Law> law,
                    const ElasticAnswer& answer, const DofVector& displacement);
 
-/// A solution at the nodes of its own elements.
+/// A solution at the nodes of its own elements, which are there once for each material.
 struct NodalSolution {
   NodalVectors X, displacement;         ///< rest positions and displacements [m], n x 3
   Stresses stress;                      ///< as stress_at() gives them [Pa], n x 6

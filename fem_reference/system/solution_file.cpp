@@ -54,7 +54,7 @@ void write_solution(const std::string& file, const NodalSolution& solution, cons
     for (const int a : order) nodes.push_back(cell[static_cast<std::size_t>(a)]);
     vtu.add_cell(nodes, type);
   }
-  VtuArray mises{"von_mises_stress", 1, {}};
+  VtuArray mises{"von_mises", 1, {}};
   for (Eigen::Index n = 0; n < solution.stress.rows(); ++n) mises.values.push_back(von_mises(solution.stress.row(n)));
   vtu.point_data = {array_of("displacement", solution.displacement), array_of("stress", solution.stress),
                     std::move(mises)};

@@ -14,7 +14,9 @@ namespace springproof {
 struct Anchors {
   /// What solvers, kernels and the time step use of this law.
   static constexpr LawTraits traits = {
-      "anchors", Reach::cells, {Capability::cell_kernels, Capability::cut_multigrid, Capability::energy_momentum}};
+      "anchors",
+      Reach::cells,
+      {Capability::cell_kernels, Capability::cut_multigrid, Capability::energy_momentum, Capability::recovered_stress}};
 
   /// Names the parameters, for springs files (law_traits.h).
   template <class Fields>

@@ -47,7 +47,7 @@ struct AveragedSprings {
       "averaged springs",
       Reach::cells,
       {Capability::lattice_kernels, Capability::gpu, Capability::cell_kernels, Capability::cells_of_any_shape,
-       Capability::cut_multigrid, Capability::energy_momentum}};
+       Capability::cut_multigrid, Capability::energy_momentum, Capability::recovered_stress}};
   /// Why it cannot what its traits say, with these parameters; nullptr: it can (law_traits.h).
   const char* lacks(Capability what) const;
   static constexpr double least_variance = 0.1;  ///< of a full cell's; for the solvers

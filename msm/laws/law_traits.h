@@ -41,8 +41,9 @@ enum class Capability {
   relaxation,           ///< branches that relax (msm/dynamics/terms/relaxing_cells.h)
   mass_average,         ///< a share of consistent mass (msm/dynamics/terms/mass_average.h)
   lammps,               ///< bonds and angles of LAMMPS
+  recovered_stress,     ///< stress at the nodes, at small strain (msm/measure/promised_error.h)
 };
-constexpr std::array<const char*, 16> names_of(Capability) {
+constexpr std::array<const char*, 17> names_of(Capability) {
   return {"lattice kernels",
           "steps on a GPU",
           "cell kernels",
@@ -58,7 +59,8 @@ constexpr std::array<const char*, 16> names_of(Capability) {
           "viscosity",
           "relaxation",
           "consistent mass",
-          "terms of LAMMPS"};
+          "terms of LAMMPS",
+          "recovered stress"};
 }
 
 /// A set of them.

@@ -9,6 +9,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "meshes/voxels/cells_apart.h"
 #include "meshes/voxels/refined_grid.h"
 
 namespace springproof {
@@ -74,12 +75,14 @@ std::array<double, 8> weights_of_middle(const FilledPart& part) {
   return weights;
 }
 
-/// The strain at a place that is linear in some cells and nearest to their mean strains; nothing where the cells do not
-/// span the space.
+/// The strain at a place that is linear in some cells and nearest to their mean strains; where the cells do not span
+/// the space nothing, or their mean.
 class LinearStrain {
  public:
   LinearStrain(const Network& network, const Strains& of_cells)
-      : of_cells_(of_cells), middle_(static_cast<Eigen::Index>(network.cells.size()), 3) {
+      : of_cells_(of_cells),
+        edges_(network.cells.edge * network.cells.proportions.transpose()),
+        middle_(static_cast<Eigen::Index>(network.cells.size()), 3) {
     for (std::size_t c = 0; c < network.cells.size(); ++c) {
       const std::array<double, 8> weights = weights_of_middle(network.cells.part(c));
       Eigen::RowVector3d X = Eigen::RowVector3d::Zero();
@@ -90,34 +93,36 @@ class LinearStrain {
   }
 
   std::optional<Eigen::Matrix<double, 1, 9>> operator()(const std::set<int>& cells, const Eigen::RowVector3d& X,
-                                                        double edge) const {
+                                                        bool or_mean = false) const {
     Eigen::Matrix4d moments = Eigen::Matrix4d::Zero();
     Eigen::Matrix<double, 4, 9> sum = Eigen::Matrix<double, 4, 9>::Zero();
     double volume = 0;
     for (const int c : cells) {
       Eigen::Vector4d of;
-      of << 1, (middle_.row(c) - X).transpose() / edge;
+      of << 1, (middle_.row(c) - X).cwiseQuotient(edges_).transpose();
       moments += volume_[c] * of * of.transpose();
       sum += volume_[c] * of * of_cells_.row(c);
       volume += volume_[c];
     }
     const Vec3 mean = moments.col(0).tail<3>() / volume;
     const Eigen::Matrix3d spread = moments.bottomRightCorner<3, 3>() / volume - mean * mean.transpose();
-    if (spread.selfadjointView<Eigen::Lower>().eigenvalues()[0] < least_spread) return {};
+    if (spread.selfadjointView<Eigen::Lower>().eigenvalues()[0] < least_spread)
+      return or_mean ? std::optional(Eigen::Matrix<double, 1, 9>(sum.row(0) / volume)) : std::nullopt;
     return moments.ldlt().solve(sum).row(0).eval();
   }
 
  private:
   const Strains& of_cells_;
+  Eigen::RowVector3d edges_;
   NodalVectors middle_;
   std::vector<double> volume_;
 };
 
-std::set<int> cells_at_corners(const Network& network, const std::vector<std::vector<int>>& at,
+std::set<int> cells_at_corners(const CellsApart& all, const std::vector<std::vector<int>>& at,
                                const std::set<int>& cells) {
   std::set<int> around;
   for (const int c : cells)
-    for (const int n : network.cells.corners[c]) around.insert(at[n].begin(), at[n].end());
+    for (const int n : all.corners[c]) around.insert(at[n].begin(), at[n].end());
   return around;
 }
 
@@ -195,28 +200,28 @@ CellEnergies cell_energies(const MassSpringModel& model, const NodalVectors& u) 
   return energies;
 }
 
-std::array<NodalVectors, 2> recovered_stress(const MassSpringModel& model, const NodalVectors& u) {
+NodalStresses recovered_stress(const MassSpringModel& model, const NodalVectors& u) {
   const AveragedSprings* law = averaged_springs_of(model);
-  if (!law || !law->regions.empty())
-    throw std::invalid_argument("stresses are recovered in cells of averaged springs of one material");
+  if (!law) throw std::invalid_argument("stresses are recovered in cells of averaged springs");
   const Network& network = model.network;
-  const Strains of_cells = cell_strains(network, u), means = nodal_strains(network, of_cells);
+  const Strains of_cells = cell_strains(network, u);
   const LinearStrain linear(network, of_cells);
-  std::vector<std::vector<int>> at(network.nodes());
+  const CellsApart all = apart(network.cells.corners, network.cells.materials);
+  std::vector<std::vector<int>> at(all.node.size());
   for (std::size_t c = 0; c < network.cells.size(); ++c)
-    for (const int n : network.cells.corners[c]) at[n].push_back(static_cast<int>(c));
-  const NodalVectors none = NodalVectors::Zero(network.nodes(), 3);
-  std::array<NodalVectors, 2> stress = {none, none};
-  for (int n = 0; n < network.nodes(); ++n) {
+    for (const int n : all.corners[c]) at[n].push_back(static_cast<int>(c));
+  NodalStresses stress = NodalStresses::Zero(static_cast<Eigen::Index>(at.size()), 6);
+  for (std::size_t n = 0; n < at.size(); ++n) {
     std::set<int> cells(at[n].begin(), at[n].end());
     if (cells.empty()) continue;
     std::optional<Eigen::Matrix<double, 1, 9>> strain;
-    for (int ring = 0; ring < most_rings && !(strain = linear(cells, network.X.row(n), network.cells.edge)); ++ring)
-      cells = cells_at_corners(network, at, cells);
-    const Eigen::Matrix3d E = as_matrix(strain ? *strain : Eigen::Matrix<double, 1, 9>(means.row(n)));
-    const Eigen::Matrix3d S = 2 * law->shear_modulus * E + law->lame_lambda * E.trace() * Eigen::Matrix3d::Identity();
-    stress[0].row(n) = S.diagonal().transpose();
-    stress[1].row(n) << S(0, 1), S(1, 2), S(0, 2);
+    for (int ring = 0; ring < most_rings && !(strain = linear(cells, network.X.row(all.node[n]))); ++ring)
+      cells = cells_at_corners(all, at, cells);
+    const AveragedSprings& own = law->in(network.cells.material(at[n].front()));
+    if (!strain) strain = linear({at[n].begin(), at[n].end()}, network.X.row(all.node[n]), true);
+    const Eigen::Matrix3d E = as_matrix(*strain);
+    const Eigen::Matrix3d S = 2 * own.shear_modulus * E + own.lame_lambda * E.trace() * Eigen::Matrix3d::Identity();
+    stress.row(static_cast<Eigen::Index>(n)) << S.diagonal().transpose(), S(0, 1), S(1, 2), S(0, 2);
   }
   return stress;
 }

@@ -1,7 +1,6 @@
 // Stress of cells of averaged springs, recovered at nodes, and their error, estimated without a reference.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "meshes/voxels/cut_cells.h"
@@ -31,15 +30,18 @@ struct CellEnergies {
 /// @throws std::invalid_argument if the model has no averaged springs.
 CellEnergies cell_energies(const MassSpringModel& model, const NodalVectors& displacement);
 
+/// xx yy zz xy yz xz [Pa], one row per node.
+using NodalStresses = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>;
+
 /// Stress at the nodes by patch recovery (Zienkiewicz and Zhu 1992): Hooke's law of the strain that is linear in the
 /// cells around a node, by least squares of their mean strains in the middle of what they hold, each by its volume;
 /// where these do not span the space, as on surfaces, with the cells around those.  The mean over a node's cells leaves
-/// alternating pressures out.
-/// @param model of averaged springs of one material
+/// alternating pressures out.  Where materials meet, in the cells of each alone.
+/// @param model of averaged springs
 /// @param displacement small, of the nodes [m], n x 3
-/// @return xx yy zz and xy yz xz, n x 3 each [Pa]; 0 at nodes without a cell
+/// @return a row per node of apart() (meshes/voxels/cells_apart.h); 0 at nodes without a cell
 /// @throws std::invalid_argument if the model has no averaged springs.
-std::array<NodalVectors, 2> recovered_stress(const MassSpringModel& model, const NodalVectors& displacement);
+NodalStresses recovered_stress(const MassSpringModel& model, const NodalVectors& displacement);
 
 /// Halves the cells of a body whose errors are the largest and make up three tenths of the error; cells may be halved
 /// four times.

@@ -168,7 +168,7 @@ void write_vtu_of(const fs::path& file, const SolidBody& body, const Numbers& di
   Field field;
   field.mesh = body.mesh;
   field.displacement = rows_of(displacement, "displacement", nodes);
-  std::vector<std::pair<std::string, NodalVectors>> extra;
+  NodalFields extra;
   for (const auto& [name, values] : arrays) {
     const auto key = name.cast<std::string>();
     extra.emplace_back(key, rows_of(values.cast<Numbers>(), key.c_str(), nodes));

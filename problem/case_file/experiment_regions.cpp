@@ -86,8 +86,6 @@ std::optional<std::pair<std::string, SourceLocation>> of_one_material(const Expe
   if (e.reference.smooth) return says("strains jump where materials meet", "smooth = false in [reference]");
   if (std::find(e.measures.begin(), e.measures.end(), "promised_error") != e.measures.end())
     return says("strains jump where materials meet, which promised_error takes for an error", "other measures");
-  if (std::any_of(e.measures.begin(), e.measures.end(), [](const auto& m) { return m.starts_with("stress_"); }))
-    return says("stresses jump where materials meet, and are recovered in one", "other measures");
   if (e.parts) return says("the parts of errors are of one material", "no parts in [compare]");
   if (e.fracture) return says("drying bodies are of one material", "no [fracture]");
   if (e.relaxation.acts()) return says("relaxation is of one material", "no [material.relaxation]");

@@ -188,13 +188,18 @@ schema = json.load(open(sys.argv[1]))
 jsonschema.Draft202012Validator.check_schema(schema)
 for name in sys.argv[2:]:
     jsonschema.validate(json.load(open(name)), schema)
-broken = json.load(open("hybmss.json"))  # version 1: no node follows others
-broken["nodes"]["mass_kg"][0] = 0
-try:
-    jsonschema.validate(broken, schema)
-    sys.exit("the schema accepts a node without mass")
-except jsonschema.ValidationError:
-    pass
+text = open("hybmss.json").read()
+for spoil in ('d["nodes"]["mass_kg"][0] = 0',  # version 1: no node follows others
+              'd["nodes"]["position_m"][0][0] = 2e9', 'd["springs"]["nodes"][0] = [1, 1]', 'd["springs"]["stiffness_N_m"][0] = 1e31',
+              'd["cells"]["edge_m"] = 0', 'd["cells"]["proportions"] = [2, 1, 0.5]', 'd["laws"]["angular_springs"] = {"beta_Nm": 1}',
+              'd["laws"]["averaged_springs"] = {}', 'd["relaxation"] = {"share": [1], "time_s": [1]}', 'd["bonds"] = {}', 'del d["cells"]'):
+    d = json.loads(text)
+    exec(spoil)
+    try:
+        jsonschema.validate(d, schema)
+        sys.exit(f"the schema accepts {spoil}")
+    except jsonschema.ValidationError:
+        pass
 END
 else
   echo "without jsonschema: the schema is not checked"

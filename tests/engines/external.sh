@@ -45,7 +45,7 @@ csv=own/vtu/own/hybmss_avg_nu0.25_8x2x2.csv
 [ "$(wc -l <$csv)" -eq 82 ] || fail "$(ls own/vtu/own)"
 if [ -x "$(dirname "$program")/springproof-fem" ]; then  # the reference's own mesh: 16 x 4 x 4 elements of 27 nodes
   for nu in 0.25 0.4; do
-    grep -q 'NumberOfPoints="2673" NumberOfCells="256"' own/vtu/own/reference_q2_nu$nu.vtu && grep -q 'Name="von_mises_stress"' own/vtu/own/reference_q2_nu$nu.vtu ||
+    grep -q 'NumberOfPoints="2673" NumberOfCells="256"' own/vtu/own/reference_q2_nu$nu.vtu && grep -q 'Name="von_mises"' own/vtu/own/reference_q2_nu$nu.vtu ||
       fail "no file of the reference at nu = $nu: $(ls own/vtu/own)"
     grep -q "reference_q2_nu$nu.vtu" own/vtu/own/reference_q2.pvd || fail "no series of the reference"
   done

@@ -55,11 +55,14 @@ TEST_P(FemRegions, InSeriesAreExactAtAnyContrast) {
       problem.tolerance = 1e-9;  // round-off of the stiffer part's forces stops the residual at 4e-10
       problem.points = NodalVectors(2, 3);
       problem.points << 1, 0.5, 0.5, 2, 0.5, 0.5;
+      problem.stress_points = problem.points;
       const fem::Solution s = fem::solve_grid(problem);
       ASSERT_TRUE(s.ok) << s.message << " " << s.form;
       const double at_middle = -10 / confined_modulus(first), beyond = -10 / confined_modulus(second);
       EXPECT_NEAR(s.displacement(0, 0) / at_middle, 1, 1e-6) << contrast << " " << nu << " " << s.form;
       EXPECT_NEAR(s.displacement(1, 0) / (at_middle + beyond), 1, 1e-6) << contrast << " " << nu << " " << s.form;
+      EXPECT_NEAR(s.stress(0, 1), -10 * 0.3 / 0.7, 1e-4) << "where they meet, of the first";
+      EXPECT_NEAR(s.stress(1, 1), -10 * nu / (1 - nu), 1e-4);
       ASSERT_EQ(s.regions.size(), 1u);
       EXPECT_NEAR(s.regions[0].stress(0, 0) / -10, 1, 1e-6);
       EXPECT_NEAR(s.regions[0].stress(0, 1), -10 * nu / (1 - nu), 1e-5);

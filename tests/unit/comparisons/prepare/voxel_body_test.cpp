@@ -373,6 +373,14 @@ const Mistake mistakes[] = {
      "{ model = \"hybmss_avg\", curve = \"neo_hooke\", coarsened = true }",
      "ball.toml:*hybmss_avg: coarsened = true: at large strain they follow Hencky's law"},
     {"shift_too_large", "\"emsm_random\"", "{ model = \"hybmss\", shift = 2 }", "ball.toml:*0 <= shift <= 1"},
+    {"stress_of_a_network", "\"probe\"]",
+     "\"stress_peak\"]\n[[expect]]\nmodel = \"emsm_random\"\nmeasure = \"stress_peak\"\nsource = \"analytic\"\n"
+     "at_least = 1",
+     "ball.toml:25:1: measure: 'stress_peak' is not known of 'emsm_random' (allowed: of hybmss_avg, and in*"},
+    {"stress_of_cubes", "measures = [\"displacement_error\", \"volume_change\", \"reaction\", \"probe\"]",
+     "elements = [\"q1\"]\nmeasures = [\"stress_error\"]\n[[expect]]\nmodel = \"fem_q1\"\nmeasure = "
+     "\"stress_error.principal\"\nsource = \"analytic\"\nvalue = 0\nwithin = 1",
+     "ball.toml:26:1: measure: 'stress_error.principal' is not known of 'fem_q1' (*the cubes of a body of voxels)"},
     {"edge_too_long", "edge_m = 0.03", "edge_m = -3", "ball.toml:*edge_m"},
 };
 INSTANTIATE_TEST_SUITE_P(Cases, VoxelMistakes, testing::ValuesIn(mistakes),

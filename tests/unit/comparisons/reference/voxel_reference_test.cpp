@@ -144,6 +144,17 @@ TEST_F(VoxelReference, ElementsBesideTheModelsRunAtTheirResolutions) {
     }
 }
 
+TEST_F(VoxelReference, RecordsHaveTheTetrahedraThatWereSolved) {
+  const PreparedCase prepared = prepared_ball(100, every_load, "\"hybmss\"", "edge_m = 0.05\nrefine = 2");
+  const Part part = run_part(prepared, 0, {});
+  ASSERT_FALSE(part.references.empty());
+  for (const ReferenceRecord& r : part.references) {
+    EXPECT_GE(r.cells.back()[0], 2 * prepared.body.uncut.back()) << r.measure;
+    EXPECT_TRUE(
+        std::ranges::any_of(part.runs, [&](const springproof::Run& run) { return run.cells == r.cells.back(); }));
+  }
+}
+
 TEST_F(VoxelReference, AStiffMotionIsTheSameInTetrahedraAndCubes) {
   // A body turned and moved as a whole (first order): every mesh, and what is taken from it outside the body, is exact.
   std::string text = ball_case(100, "", "\"hybmss\"", "edge_m = 0.025");

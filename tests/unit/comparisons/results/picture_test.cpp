@@ -133,16 +133,5 @@ TEST(ThinSurface, ManyFacetsBecomeFewerOfTheSameShape) {
   EXPECT_NEAR(area(s, facets) / (4 * M_PI), 1, 0.01);
 }
 
-TEST(VonMises, IsTheSizeOfWhatChangesShape) {
-  Eigen::Matrix<double, 4, 6, Eigen::RowMajor> stress;  // xx yy zz xy yz xz
-  stress << 5, 5, 5, 0, 0, 0, 0, -3, 0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 1, 2, 3, 0, 0, 1;
-  const std::vector<float> found = von_mises(stress);
-  ASSERT_EQ(found.size(), 4u);
-  EXPECT_FLOAT_EQ(found[0], 0) << "pressure alone";
-  EXPECT_FLOAT_EQ(found[1], 3) << "uniaxial";
-  EXPECT_FLOAT_EQ(found[2], 2 * std::sqrt(3.0f)) << "shear";
-  EXPECT_FLOAT_EQ(found[3], std::sqrt(6.0f));
-}
-
 }  // namespace
 }  // namespace springproof::picture_test

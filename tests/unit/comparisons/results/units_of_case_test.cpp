@@ -31,5 +31,10 @@ TEST(UnitsOfCase, ResultsAreGivenInThem) {
             "point (60, 0, 10) mm: loaded by a force of (0, 1, 0) N");
 }
 
+TEST(UnitsOfCase, WordsHaveThem) {
+  EXPECT_EQ(text(Vec3(0.1, 0.02, -0.0123456), Units::mm, "m", 3), "(100, 20, -12.3) mm");
+  EXPECT_EQ(text(0.25, Units::m), "0.25 m");
+}
+
 }  // namespace
 }  // namespace springproof::units_of_case_test
