@@ -168,8 +168,7 @@ Surface thinned(const Surface& surface, double edge) {
   }
 }
 
-Surface remesh(const Surface& surface, double edge, double most_change) {
-  constexpr double most_balanced = 0.01;  // of the volume: beyond, parts of the body are lost, and not chords
+Surface remesh(const Surface& surface, double edge, double most_change, double most_balanced) {
   if (!(edge > 0)) throw std::runtime_error("remesh: edge must be positive");
   const double facets = facets_of(surface, edge);
   if (!(facets < 4e6)) throw std::runtime_error(fmt::format("would make {:.2g} facets (allowed: 4e6)", facets));
