@@ -70,10 +70,11 @@ set_tests_properties(experiment.calibration_motion PROPERTIES LABELS long TIMEOU
 
 add_test(NAME experiment.ten_bodies COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/bodies/ten_bodies.py
                                             ${CMAKE_BINARY_DIR}/experiments/ten_bodies $<TARGET_FILE:springproof>)
-# Twenty of a hundred, one of each kind at least; anew, though the script takes up where it stopped.
+# Twenty of a hundred, one of each kind at least; anew, though the script takes up where it stopped.  Of seventeen the
+# reference tells the springs' error, as measured: fewer, and meshes or their limits became worse.
 set(hundred ${CMAKE_BINARY_DIR}/experiments/hundred_bodies)
 add_test(NAME experiment.hundred_bodies
-         COMMAND sh -c "rm -rf '${hundred}' && exec python3 '${CMAKE_CURRENT_SOURCE_DIR}/bodies/hundred_bodies.py' '${hundred}' \"$0\" --count 20"
+         COMMAND sh -c "rm -rf '${hundred}' && exec python3 '${CMAKE_CURRENT_SOURCE_DIR}/bodies/hundred_bodies.py' '${hundred}' \"$0\" --count 20 --least 17"
                  $<TARGET_FILE:springproof>)
 set_tests_properties(experiment.ten_bodies experiment.hundred_bodies PROPERTIES LABELS long TIMEOUT 3600)
 

@@ -8,6 +8,8 @@
 #include <optional>
 
 #include "comparisons/prepare/rims.h"
+#include "meshes/quality.h"
+#include "meshes/surface/surface.h"
 #include "meshes/volume.h"
 #include "problem/case_file/measures.h"
 
@@ -84,6 +86,18 @@ Clause differing_rim(const Question& q) {
   return {};
 }
 
+/// A body of parts that are thinner (2 volume / surface) than an element of the coarsest mesh.
+Clause thin_parts(const Question& q) {
+  if (q.prepared.body.tetrahedra.empty()) return {};
+  const Mesh& body = *q.prepared.body.tetrahedra.back();
+  const double inside = volume(body, body.nodes), thick = 2 * inside / area(outside_of(body)),
+               coarsest = edge_of_regular(inside, q.prepared.body.uncut.front());
+  if (coarsest < thick) return {};
+  return fmt::format(
+      "the coarsest mesh, of elements of {:.2g} m, has one across parts of {:.2g} m: [reference] edge_m = {:.2g}",
+      coarsest, thick, element_size(q.prepared) * std::min(thick / coarsest, 1 / 1.5));
+}
+
 Clause coarse_across(const Question& q) {
   const Cells& cells = q.grids.grids.back().grid.cells;
   if (q.voxels() || std::none_of(cells.begin(), cells.end(), [](int n) { return n > 1 && n < two_on_the_coarsest; }))
@@ -103,8 +117,8 @@ std::string singular_rims(const Question& q) {
 std::string cause_and_remedy(const PreparedCase& prepared, const IsotropicMaterial& material, const ElementGrids& grids,
                              const std::string& measure) {
   const Question q{prepared, material, grids, measure};
-  for (const auto clause :
-       {meshes_of_one_fineness, element_that_locks, probe_at_a_rim, differing_surfaces, differing_rim, coarse_across})
+  for (const auto clause : {meshes_of_one_fineness, element_that_locks, probe_at_a_rim, differing_surfaces,
+                            differing_rim, thin_parts, coarse_across})
     if (const Clause cause = clause(q)) return *cause;
   return singular_rims(q);
 }

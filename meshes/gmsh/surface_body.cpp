@@ -125,9 +125,10 @@ class FileSurface {
 };
 
 /// Fills the surface, with even triangles of the edge.  What remeshing cuts off falls as the edge squared: coarser
-/// meshes may lose more.  The triangles' edges are `shorter` times the tetrahedra's.
-MeshAt surface_at(const MeshRequest& r, FileSurface& source, double shorter = 1) {
-  return [&r, &source, shorter](double edge, double times) {
+/// meshes may lose more, of which balanced facets give back all but `most_lost`.  The triangles' edges are `shorter`
+/// times the tetrahedra's.
+MeshAt surface_at(const MeshRequest& r, FileSurface& source, double shorter = 1, double most_lost = 1) {
+  return [&r, &source, shorter, most_lost](double edge, double times) {
     MeshRequest own = r;
     own.edge = edge;
     const double side = shorter * edge / r.scale;
@@ -135,7 +136,8 @@ MeshAt surface_at(const MeshRequest& r, FileSurface& source, double shorter = 1)
     if (suits(surface, edge / r.scale)) return OneMesh{fill(own, surface), {}, edge};
     Surface even;
     try {
-      even = remesh(surface, side, (times > 1 ? slack * most_change * times * times : most_change) - source.lost());
+      even = remesh(surface, side, (times > 1 ? slack * most_change * times * times : most_change) - source.lost(),
+                    most_lost);
     } catch (const std::runtime_error& e) {
       refuse(r.file, fmt::format("remeshing with edges of {:.3g} m {}", shorter * edge, e.what()));
     }
@@ -144,6 +146,15 @@ MeshAt surface_at(const MeshRequest& r, FileSurface& source, double shorter = 1)
                     even.triangles.size(), shorter * edge, 100 * source.change(even));
     return OneMesh{fill(own, even), {note}, edge};
   };
+}
+
+/// Meshes that all have the whole body, or, of struts and the like, as much of it as can be had.
+MeshedBody filled_refined(const MeshRequest& r, FileSurface& source) {
+  try {
+    return mesh_refined(r, surface_at(r, source, 1, most_change));
+  } catch (const InputError&) {
+    return mesh_refined(r, surface_at(r, source));
+  }
 }
 
 /// One mesh alone: a body may be too thin or too round for its edge.
@@ -190,7 +201,7 @@ MeshedBody fill_surface(const MeshRequest& request, const Surface& raw) {
   if (r.edge == 0) r.edge = r.scale * edge_for(r.tetrahedra, inside);
   refuse_too_many(r, inside * std::pow(r.scale, 3));
   FileSurface source(surface);
-  MeshedBody body = r.coarser.empty() ? filled_alone(r, source) : mesh_refined(r, surface_at(r, source));
+  MeshedBody body = r.coarser.empty() ? filled_alone(r, source) : filled_refined(r, source);
   if (const std::string note = source.note(); !note.empty()) notes.push_back(note);
   body.notes.insert(body.notes.begin(), notes.begin(), notes.end());
   body.facets = std::move(surface);

@@ -168,7 +168,7 @@ Surface thinned(const Surface& surface, double edge) {
   }
 }
 
-Surface remesh(const Surface& surface, double edge, double most_change) {
+Surface remesh(const Surface& surface, double edge, double most_change, double most_balanced) {
   if (!(edge > 0)) throw std::runtime_error("remesh: edge must be positive");
   const double facets = facets_of(surface, edge);
   if (!(facets < 4e6)) throw std::runtime_error(fmt::format("would make {:.2g} facets (allowed: 4e6)", facets));
@@ -185,16 +185,21 @@ Surface remesh(const Surface& surface, double edge, double most_change) {
 
   if (!CGAL::is_closed(mesh) || !CGAL::is_triangle_mesh(mesh)) throw std::runtime_error("leaves the surface open");
   const double before = volume(surface);
-  const auto check_volume = [&](const Surface& result) {
+  const auto check_volume = [&](const Surface& result, double most) {
     const double change = std::abs(volume(result) - before) / before;
-    if (!(change < most_change)) throw std::runtime_error(fmt::format("changes the volume by {:.2g} %", 100 * change));
+    if (!(change < most)) throw std::runtime_error(fmt::format("changes the volume by {:.2g} %", 100 * change));
   };
-  check_volume(from_cgal(mesh));  // in vain to look for cuts
+  check_volume(from_cgal(mesh), most_change);  // in vain to look for cuts
   std::optional<Surface> result = without_cuts(mesh);
   if (!result) throw std::runtime_error("makes facets that cut each other");
-  check_volume(*result);
   Surface even = balanced(*result, surface);
-  return intersecting_facets(even, 1).empty() ? even : std::move(*result);
+  // Where facets cut each other now their points go back to where they cut none.
+  for (auto cuts = intersecting_facets(even, most_cuts); !cuts.empty(); cuts = intersecting_facets(even, most_cuts))
+    for (const auto& [f, g] : cuts)
+      for (const int facet : {f, g})
+        for (const int n : even.triangles[facet]) even.points[n] = result->points[n];
+  check_volume(even, most_balanced);
+  return even;
 }
 
 }  // namespace springproof

@@ -34,8 +34,8 @@ Surface thinned(const Surface& surface, double edge);
 /// than 40 degrees are kept as lines (unless lines of less than eight edges in all); elsewhere the new facets lie as
 /// much inside of the old surface as outside of it (balanced.h).
 /// @throws std::runtime_error, what it does, if that fails: the edge is too long for the body (its volume changes by
-///         more than `most_change`, or facets cut each other and cannot be repaired), or too short (more than 4 million
-///         facets).
-Surface remesh(const Surface& surface, double edge, double most_change = 0.01);
+///         more than `most_change` before facets are balanced, or `most_balanced` after, or facets cut each other and
+///         cannot be repaired), or too short (more than 4 million facets).
+Surface remesh(const Surface& surface, double edge, double most_change = 0.01, double most_balanced = 0.01);
 
 }  // namespace springproof

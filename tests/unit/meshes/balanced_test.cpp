@@ -14,6 +14,11 @@ namespace {
 using namespace test;
 using std::numbers::pi;
 
+/// With which so many facets cover the surface [m].
+double edge_of(const Surface& surface, double facets) {
+  return std::sqrt(area(surface) / facets / (std::sqrt(3.0) / 4));
+}
+
 // Chords of a sphere lose 1/8 to 1/4 of the edge squared of its volume; balanced, a tenth of that, whichever the edge.
 TEST(Balanced, AMeshOfASphereHasItsVolume) {
   const Surface ball = sphere(1, 5);
@@ -24,6 +29,21 @@ TEST(Balanced, AMeshOfASphereHasItsVolume) {
     EXPECT_TRUE(before == 0 || std::abs(off) < std::abs(before)) << edge;
     before = off;
   }
+}
+
+// Balanced facets of a rough or a thick body may cut each other: only their points go back, else 5 % were lost.
+TEST(Balanced, OnlyFacetsThatCutEachOtherStayChords) {
+  for (const Surface& body : {trefoil(0.6, 300, 30), noisy_sphere(1, 4, 0.05, 7)}) {
+    const double edge = edge_of(body, 1600);
+    EXPECT_NEAR(volume(remesh(body, edge, 0.2)) / volume(body), 1, 2e-3);
+  }
+}
+
+// What chords lose of a coarse mesh balancing gives back; what is lost with a part of the body it cannot.
+TEST(Balanced, ACoarseMeshWithoutAPartOfTheBodyIsRefused) {
+  const Surface hollow = both(sphere(1, 4), turned(moved(sphere(1, 3), 0.3, {0, 0.3, 0})));
+  EXPECT_NEAR(volume(remesh(hollow, 0.25, 0.1)) / volume(hollow), 1, 0.01);
+  EXPECT_THROW(remesh(hollow, 0.6, 0.1), std::runtime_error);
 }
 
 // Where points may not leave a plane nor a crease they move along it.

@@ -48,6 +48,20 @@ name = "middle"
 at_m = [0.5, 0.5, 0.5]
 )";
 
+constexpr const char* plate = R"(geo = "block.geo"
+size_m = [1, 1, 0.1]
+voxels = 800
+[[patch]]
+name = "low"
+beyond = { point_m = [0.2, 0, 0], normal = [-1, 0, 0] }
+[[patch]]
+name = "high"
+beyond = { point_m = [0.8, 0, 0], normal = [1, 0, 0] }
+[[probe]]
+name = "middle"
+at_m = [0.5, 0.5, 0.05]
+)";
+
 /// Grids of an element that have been solved with these numbers of cells.
 ElementGrids grids_of(const std::string& element, const std::vector<Cells>& cells) {
   ElementGrids e{element, {}};
@@ -74,6 +88,18 @@ TEST(ConvergenceCause, OfABodyIsTheMeshTheElementTheRimOrTheSurface) {
   says(p2, "displacement.rim.z", "from the rim of patch 'low'");
   says(p2, "displacement.middle.z", "the surface differs from mesh to mesh");
   says(p2, "displacement_error", "[reference] edge_m = ");
+}
+
+// A plate a tenth as thick as it is wide.
+TEST(ConvergenceCause, OfAThinBodyIsTheCoarsestMesh) {
+  const auto of_plate = [](double edge) {
+    const PreparedCase prepared =
+        prepare(parse_experiment(case_of(plate, fmt::format("edge_m = {}", edge), 0.3), "plate.toml"));
+    return cause(prepared, grids_of("p2", refined), "mean_displacement.high.z");
+  };
+  EXPECT_NE(of_plate(0.06).find("has one across parts of 0.083 m: [reference] edge_m = 0.0"), std::string::npos)
+      << of_plate(0.06);
+  EXPECT_EQ(of_plate(0.025).find("across parts"), std::string::npos) << of_plate(0.025);
 }
 
 TEST(ConvergenceCause, OfABlockIsTheGridOrTheRimOfTheSupport) {
