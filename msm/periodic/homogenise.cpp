@@ -16,8 +16,6 @@ namespace {
 
 constexpr double inner_tolerance = 1e-6;  // of the companion's solves; GMRES removes their error after a restart
 
-using Strains = std::vector<Eigen::Matrix3d>;
-
 /// Unit strain; shears are engineering strains.
 Eigen::Matrix3d unit_strain(int i, int j) {
   Eigen::Matrix3d strain = Eigen::Matrix3d::Zero();
@@ -109,13 +107,8 @@ KrylovResult relax(const PeriodicStiffness& K, const PeriodicStiffness* companio
   return result;
 }
 
-struct Effective {
-  Eigen::MatrixXd C;
-  int iterations = 0;
-  double residual = 0;
-};
-
-Effective effective_stiffness(const MassSpringModel& model, const Strains& strains, const HomogeniseOptions& options) {
+/// C, and how it was found; without moduli.
+Homogenised relaxed_stiffness(const MassSpringModel& model, const HomogeniseOptions& options) {
   const Network& network = model.network;
   if (network.image_of.empty()) throw std::invalid_argument("homogenisation needs a periodic network");
   const PeriodicStiffness K(model);
@@ -123,15 +116,15 @@ Effective effective_stiffness(const MassSpringModel& model, const Strains& strai
   const MassSpringModel energy_form = symmetric_companion(model);
   if (!can(model, Capability::energy)) companion = std::make_unique<PeriodicStiffness>(energy_form);
 
-  const auto size = static_cast<Eigen::Index>(strains.size());
-  Eigen::MatrixXd affine(3 * network.nodes(), size);
-  for (Eigen::Index a = 0; a < size; ++a) {
-    const NodalVectors u = network.X * strains[a];
+  constexpr int voigt[6][2] = {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {2, 0}, {0, 1}};
+  Eigen::MatrixXd affine(3 * network.nodes(), 6);
+  for (int a = 0; a < 6; ++a) {
+    const NodalVectors u = network.X * unit_strain(voigt[a][0], voigt[a][1]);
     affine.col(a) = flat(u);
   }
-  Effective effective{Eigen::MatrixXd(size, size)};
+  Homogenised h{};
   Eigen::VectorXd force;
-  for (Eigen::Index b = 0; b < size; ++b) {
+  for (int b = 0; b < 6; ++b) {
     K.multiply(affine.col(b), force);
     const Eigen::VectorXd load = -K.gather(force);
     Eigen::VectorXd w = Eigen::VectorXd::Zero(load.size());
@@ -140,28 +133,27 @@ Effective effective_stiffness(const MassSpringModel& model, const Strains& strai
       if (!result.converged)
         throw std::runtime_error(fmt::format("homogenisation did not converge: residual {:.1e} after {} iterations",
                                              result.residual, result.iterations));
-      effective.iterations += result.iterations;
-      effective.residual = std::max(effective.residual, result.residual);
+      h.iterations += result.iterations;
+      h.residual = std::max(h.residual, result.residual);
     }
     K.multiply(affine.col(b) + K.spread(w), force);
-    effective.C.col(b) = affine.transpose() * force / network.volume.sum();
+    h.C.col(b) = affine.transpose() * force / network.volume.sum();
   }
-  return effective;
+  return h;
 }
 
-/// Factors that turn Voigt's matrix into Kelvin's, whose Frobenius norm is the tensor's.
-Eigen::MatrixXd kelvin(Eigen::MatrixXd C, int normal_strains) {
-  const Eigen::Index shears = C.rows() - normal_strains;
-  C.bottomRows(shears) *= std::sqrt(2.0);
-  C.rightCols(shears) *= std::sqrt(2.0);
+/// Voigt's matrix with the factors of Kelvin's, whose Frobenius norm is the tensor's.
+Eigen::Matrix<double, 6, 6> kelvin(Eigen::Matrix<double, 6, 6> C) {
+  C.bottomRows<3>() *= std::sqrt(2.0);
+  C.rightCols<3>() *= std::sqrt(2.0);
   return C;
 }
 
-template <class Result>
-void compare_with_isotropic(const Eigen::MatrixXd& isotropic, int normal_strains, Result& result) {
-  const Eigen::MatrixXd C = kelvin(result.C, normal_strains);
-  result.anisotropy = (C - kelvin(isotropic, normal_strains)).norm() / C.norm();
-  result.asymmetry = (C - C.transpose()).norm() / C.norm();
+/// Factors that turn Voigt's matrix into Kelvin's, whose Frobenius norm is the tensor's.
+Eigen::MatrixXd kelvin(Eigen::MatrixXd C) {
+  C.bottomRows<3>() *= std::sqrt(2.0);
+  C.rightCols<3>() *= std::sqrt(2.0);
+  return C;
 }
 
 }  // namespace
@@ -175,39 +167,16 @@ Eigen::Matrix<double, 6, 6> isotropic_stiffness(double K, double G) {
 }
 
 Homogenised homogenise(const MassSpringModel& model, const HomogeniseOptions& options) {
-  const Effective effective = effective_stiffness(model,
-                                                  {unit_strain(0, 0), unit_strain(1, 1), unit_strain(2, 2),
-                                                   unit_strain(1, 2), unit_strain(2, 0), unit_strain(0, 1)},
-                                                  options);
-  Homogenised h{};
-  h.C = effective.C;
-  h.iterations = effective.iterations;
-  h.residual = effective.residual;
+  Homogenised h = relaxed_stiffness(model, options);
+  const Eigen::Matrix<double, 6, 6> C = kelvin(h.C);
   // The eigenvalues of an isotropic tensor are 3 K and, five times, 2 G: projections of the tensor and of its trace.
-  const double K = h.C.topLeftCorner<3, 3>().sum() / 9, G = (kelvin(h.C, 3).trace() - 3 * K) / 10;
+  const double K = h.C.topLeftCorner<3, 3>().sum() / 9, G = (C.trace() - 3 * K) / 10;
   h.bulk_modulus = K;
   h.shear_modulus = G;
   h.youngs_modulus = 9 * K * G / (3 * K + G);
   h.poisson_ratio = (3 * K - 2 * G) / (2 * (3 * K + G));
-  compare_with_isotropic(isotropic_stiffness(K, G), 3, h);
-  return h;
-}
-
-HomogenisedPlane homogenise_plane(const MassSpringModel& model, const HomogeniseOptions& options) {
-  const Effective effective =
-      effective_stiffness(model, {unit_strain(0, 0), unit_strain(1, 1), unit_strain(0, 1)}, options);
-  HomogenisedPlane h{};
-  h.C = effective.C;
-  h.iterations = effective.iterations;
-  h.residual = effective.residual;
-  const double K = h.C.topLeftCorner<2, 2>().sum() / 4, G = (kelvin(h.C, 2).trace() - 2 * K) / 4;
-  h.bulk_modulus = K;
-  h.shear_modulus = G;
-  h.youngs_modulus = 4 * K * G / (K + G);
-  h.poisson_ratio = (K - G) / (K + G);
-  Eigen::Matrix3d isotropic;
-  isotropic << K + G, K - G, 0, K - G, K + G, 0, 0, 0, G;
-  compare_with_isotropic(isotropic, 2, h);
+  h.anisotropy = (C - kelvin(isotropic_stiffness(K, G))).norm() / C.norm();
+  h.asymmetry = (C - C.transpose()).norm() / C.norm();
   return h;
 }
 
