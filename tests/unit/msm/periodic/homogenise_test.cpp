@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "msm/measure/statistics.h"
 #include "msm/parameters/calibrate.h"
 #include "msm/topology/cubic_lattice.h"
