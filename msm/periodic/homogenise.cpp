@@ -16,6 +16,8 @@ namespace {
 
 constexpr double inner_tolerance = 1e-6;  // of the companion's solves; GMRES removes their error after a restart
 
+using Strains = std::vector<Eigen::Matrix3d>;
+
 /// Unit strain; shears are engineering strains.
 Eigen::Matrix3d unit_strain(int i, int j) {
   Eigen::Matrix3d strain = Eigen::Matrix3d::Zero();
@@ -107,8 +109,13 @@ KrylovResult relax(const PeriodicStiffness& K, const PeriodicStiffness* companio
   return result;
 }
 
-/// C, and how it was found; without moduli.
-Homogenised relaxed_stiffness(const MassSpringModel& model, const HomogeniseOptions& options) {
+struct Effective {
+  Eigen::MatrixXd C;
+  int iterations = 0;
+  double residual = 0;
+};
+
+Effective effective_stiffness(const MassSpringModel& model, const Strains& strains, const HomogeniseOptions& options) {
   const Network& network = model.network;
   if (network.image_of.empty()) throw std::invalid_argument("homogenisation needs a periodic network");
   const PeriodicStiffness K(model);
@@ -116,15 +123,15 @@ Homogenised relaxed_stiffness(const MassSpringModel& model, const HomogeniseOpti
   const MassSpringModel energy_form = symmetric_companion(model);
   if (!can(model, Capability::energy)) companion = std::make_unique<PeriodicStiffness>(energy_form);
 
-  constexpr int voigt[6][2] = {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {2, 0}, {0, 1}};
-  Eigen::MatrixXd affine(3 * network.nodes(), 6);
-  for (int a = 0; a < 6; ++a) {
-    const NodalVectors u = network.X * unit_strain(voigt[a][0], voigt[a][1]);
+  const auto size = static_cast<Eigen::Index>(strains.size());
+  Eigen::MatrixXd affine(3 * network.nodes(), size);
+  for (Eigen::Index a = 0; a < size; ++a) {
+    const NodalVectors u = network.X * strains[a];
     affine.col(a) = flat(u);
   }
-  Homogenised h{};
+  Effective effective{Eigen::MatrixXd(size, size)};
   Eigen::VectorXd force;
-  for (int b = 0; b < 6; ++b) {
+  for (Eigen::Index b = 0; b < size; ++b) {
     K.multiply(affine.col(b), force);
     const Eigen::VectorXd load = -K.gather(force);
     Eigen::VectorXd w = Eigen::VectorXd::Zero(load.size());
@@ -133,27 +140,28 @@ Homogenised relaxed_stiffness(const MassSpringModel& model, const HomogeniseOpti
       if (!result.converged)
         throw std::runtime_error(fmt::format("homogenisation did not converge: residual {:.1e} after {} iterations",
                                              result.residual, result.iterations));
-      h.iterations += result.iterations;
-      h.residual = std::max(h.residual, result.residual);
+      effective.iterations += result.iterations;
+      effective.residual = std::max(effective.residual, result.residual);
     }
     K.multiply(affine.col(b) + K.spread(w), force);
-    h.C.col(b) = affine.transpose() * force / network.volume.sum();
+    effective.C.col(b) = affine.transpose() * force / network.volume.sum();
   }
-  return h;
-}
-
-/// Voigt's matrix with the factors of Kelvin's, whose Frobenius norm is the tensor's.
-Eigen::Matrix<double, 6, 6> kelvin(Eigen::Matrix<double, 6, 6> C) {
-  C.bottomRows<3>() *= std::sqrt(2.0);
-  C.rightCols<3>() *= std::sqrt(2.0);
-  return C;
+  return effective;
 }
 
 /// Factors that turn Voigt's matrix into Kelvin's, whose Frobenius norm is the tensor's.
-Eigen::MatrixXd kelvin(Eigen::MatrixXd C) {
-  C.bottomRows<3>() *= std::sqrt(2.0);
-  C.rightCols<3>() *= std::sqrt(2.0);
+Eigen::MatrixXd kelvin(Eigen::MatrixXd C, int normal_strains) {
+  const Eigen::Index shears = C.rows() - normal_strains;
+  C.bottomRows(shears) *= std::sqrt(2.0);
+  C.rightCols(shears) *= std::sqrt(2.0);
   return C;
+}
+
+template <class Result>
+void compare_with_isotropic(const Eigen::MatrixXd& isotropic, int normal_strains, Result& result) {
+  const Eigen::MatrixXd C = kelvin(result.C, normal_strains);
+  result.anisotropy = (C - kelvin(isotropic, normal_strains)).norm() / C.norm();
+  result.asymmetry = (C - C.transpose()).norm() / C.norm();
 }
 
 }  // namespace
@@ -167,16 +175,39 @@ Eigen::Matrix<double, 6, 6> isotropic_stiffness(double K, double G) {
 }
 
 Homogenised homogenise(const MassSpringModel& model, const HomogeniseOptions& options) {
-  Homogenised h = relaxed_stiffness(model, options);
-  const Eigen::Matrix<double, 6, 6> C = kelvin(h.C);
+  const Effective effective = effective_stiffness(model,
+                                                  {unit_strain(0, 0), unit_strain(1, 1), unit_strain(2, 2),
+                                                   unit_strain(1, 2), unit_strain(2, 0), unit_strain(0, 1)},
+                                                  options);
+  Homogenised h{};
+  h.C = effective.C;
+  h.iterations = effective.iterations;
+  h.residual = effective.residual;
   // The eigenvalues of an isotropic tensor are 3 K and, five times, 2 G: projections of the tensor and of its trace.
-  const double K = h.C.topLeftCorner<3, 3>().sum() / 9, G = (C.trace() - 3 * K) / 10;
+  const double K = h.C.topLeftCorner<3, 3>().sum() / 9, G = (kelvin(h.C, 3).trace() - 3 * K) / 10;
   h.bulk_modulus = K;
   h.shear_modulus = G;
   h.youngs_modulus = 9 * K * G / (3 * K + G);
   h.poisson_ratio = (3 * K - 2 * G) / (2 * (3 * K + G));
-  h.anisotropy = (C - kelvin(isotropic_stiffness(K, G))).norm() / C.norm();
-  h.asymmetry = (C - C.transpose()).norm() / C.norm();
+  compare_with_isotropic(isotropic_stiffness(K, G), 3, h);
+  return h;
+}
+
+HomogenisedPlane homogenise_plane(const MassSpringModel& model, const HomogeniseOptions& options) {
+  const Effective effective =
+      effective_stiffness(model, {unit_strain(0, 0), unit_strain(1, 1), unit_strain(0, 1)}, options);
+  HomogenisedPlane h{};
+  h.C = effective.C;
+  h.iterations = effective.iterations;
+  h.residual = effective.residual;
+  const double K = h.C.topLeftCorner<2, 2>().sum() / 4, G = (kelvin(h.C, 2).trace() - 2 * K) / 4;
+  h.bulk_modulus = K;
+  h.shear_modulus = G;
+  h.youngs_modulus = 4 * K * G / (K + G);
+  h.poisson_ratio = (K - G) / (K + G);
+  Eigen::Matrix3d isotropic;
+  isotropic << K + G, K - G, 0, K - G, K + G, 0, 0, 0, G;
+  compare_with_isotropic(isotropic, 2, h);
   return h;
 }
 

@@ -24,6 +24,19 @@ struct Homogenised {
   double residual;                ///< largest |unbalanced force| / |force of the unrelaxed nodes|
 };
 
+/// The same in the plane of a planar network, per volume: plane stress if the volume shares are area times thickness.
+struct HomogenisedPlane {
+  Eigen::Matrix3d C;      ///< [Pa]; xx yy xy
+  double bulk_modulus;    ///< K_2D = lambda + mu [Pa]
+  double shear_modulus;   ///< [Pa]
+  double youngs_modulus;  ///< E_2D [Pa]; Kot et al. (2014), eq. (10)
+  double poisson_ratio;   ///< nu_2D
+  double anisotropy;      ///< as in Homogenised
+  double asymmetry;       ///< as in Homogenised
+  int iterations;         ///< of the linear solver, all strains together
+  double residual;        ///< as in Homogenised
+};
+
 /// How exactly.
 struct HomogeniseOptions {
   double tolerance = 1e-10;    ///< relative residual
@@ -37,6 +50,8 @@ struct HomogeniseOptions {
 /// @throws std::invalid_argument if the network has no images; std::runtime_error if a mode of negative energy is found
 ///   or the iteration does not converge.
 Homogenised homogenise(const MassSpringModel& model, const HomogeniseOptions& options = {});
+/// The same for a planar network: the three unit strains of its plane.
+HomogenisedPlane homogenise_plane(const MassSpringModel& model, const HomogeniseOptions& options = {});
 
 /// The stiffness of an isotropic solid, in the notation of Homogenised::C.
 Eigen::Matrix<double, 6, 6> isotropic_stiffness(double bulk_modulus, double shear_modulus);
