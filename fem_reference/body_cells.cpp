@@ -10,7 +10,6 @@
 
 #include "fem_reference/system/attached_mass.h"
 #include "fem_reference/system/materials.h"
-#include "fem_reference/system/sample.h"
 #include "problem/system/input_error.h"
 
 namespace springproof::fem {

@@ -4,7 +4,6 @@
 #include <stdexcept>
 
 #include "meshes/volume.h"
-#include "meshes/vtu.h"
 #include "problem/files/encoding.h"
 #include "problem/files/files.h"
 

@@ -1,7 +1,6 @@
 // VTK's XML file of an unstructured grid, compressed binary.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <utility>

@@ -5,7 +5,6 @@
 #include <optional>
 #include <string>
 #include <variant>
-#include <vector>
 
 #include "problem/kelvin.h"
 #include "problem/vector.h"

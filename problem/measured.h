@@ -3,7 +3,6 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "problem/system/input_error.h"
 #include "problem/vector.h"

@@ -1,7 +1,6 @@
 // How a body carries its load: the strain energy by its sections.
 #pragma once
 
-#include <array>
 #include <string>
 
 #include "meshes/mesh.h"

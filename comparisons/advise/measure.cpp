@@ -3,14 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <sstream>
 
 #include "comparisons/run/case_run.h"
 #include "comparisons/run/prepare.h"
 #include "comparisons/sweep/find_cases.h"
 #include "comparisons/sweep/status.h"
-#include "fem_reference/exchange/reference.h"
+#include "problem/files/named_files.h"
 #include "problem/processes/child.h"
 #include "problem/processes/interrupts.h"
+#include "problem/system/input_error.h"
 
 namespace springproof {
 namespace {
@@ -35,6 +38,57 @@ constexpr const char* header =
  Made by:  springproof advise --measure-held-out FILE
  error, uncertainty: as parts of the displacement.
 )";
+
+constexpr const char* heading = "case,nu,model,cells,error,uncertainty";
+
+Measurement measurement_of(const std::string& line) {
+  std::vector<std::string> fields;
+  std::istringstream in(line);
+  for (std::string field; std::getline(in, field, ',');) fields.push_back(field);
+  if (fields.size() != 6) throw std::invalid_argument(fmt::format("has {} fields", fields.size()));
+  const auto number = [&](std::size_t i) {
+    std::size_t read = 0;
+    const double x = std::stod(fields[i], &read);
+    if (read != fields[i].size()) throw std::invalid_argument(fields[i] + " is no number");
+    return x;
+  };
+  return {fields[0], number(1), fields[2], number(3), number(4), number(5)};
+}
+
+constexpr double allowed_factor = 1.5;
+
+bool both_below(const Measurement& truth, const Prediction& p) {
+  return truth.error <= truth.uncertainty && p.error <= truth.uncertainty;
+}
+
+bool within(double truth, double predicted, double factor) {
+  return truth > 0 && predicted > 0 && std::abs(std::log(predicted / truth)) <= std::log(factor);
+}
+
+const PilotModel* find_model(const Pilot& pilot, const std::string& label) {
+  for (const auto* list : {&pilot.models, &pilot.elements})
+    for (const PilotModel& m : *list)
+      if (m.label == label) return &m;
+  return nullptr;
+}
+
+/// The rows of a case at a Poisson's ratio, and the rows of the model table that they are of.
+struct HeldOut {
+  std::vector<Measurement> rows;
+  std::vector<std::string> models;
+};
+
+HeldOut held_out_of(const std::vector<Measurement>& all, const std::string& name, double poisson_ratio) {
+  HeldOut out;
+  for (const Measurement& m : all) {
+    if (m.case_name != name || !same_poisson_ratio(m.poisson_ratio, poisson_ratio)) continue;
+    out.rows.push_back(m);
+    const std::string row = m.model.substr(0, m.model.find(' '));
+    if (!row.starts_with("fem_") && std::find(out.models.begin(), out.models.end(), row) == out.models.end())
+      out.models.push_back(row);
+  }
+  return out;
+}
 
 }  // namespace
 
@@ -101,6 +155,92 @@ std::vector<Experiment> held_out_cases() {
     cases.push_back(keep(read_experiment(file), {}));
   for (const Chosen& c : chosen) cases.push_back(keep(read_experiment(find_cases({c.name}).front()), c.poisson_ratios));
   return cases;
+}
+
+MeasuredFile parse_measurements(const std::string& text, const std::filesystem::path& file) {
+  MeasuredFile out;
+  std::istringstream in(text);
+  int number = 0;
+  bool has_heading = false;
+  for (std::string line; std::getline(in, line);) {
+    ++number;
+    if (line.starts_with('#')) {
+      out.header += line.substr(1) + "\n";
+    } else if (!has_heading) {
+      if (line != heading)
+        throw InputError({file.string(), number, 1}, fmt::format("the heading is '{}' (allowed: '{}')", line, heading));
+      has_heading = true;
+    } else if (!line.empty()) {
+      try {
+        out.rows.push_back(measurement_of(line));
+      } catch (const std::exception& e) {
+        throw InputError({file.string(), number, 1},
+                         fmt::format("'{}': {} (allowed: text or numbers under '{}')", line, e.what(), heading));
+      }
+    }
+  }
+  if (!has_heading)
+    throw InputError(fmt::format(
+        "{}: holds no measurements (allowed: a file written by springproof advise --measure-held-out)", file.string()));
+  return out;
+}
+
+MeasuredFile read_measurements(const std::filesystem::path& file) {
+  return parse_measurements(read_named_file(file, "a table that springproof advise --measure wrote"), file);
+}
+
+void write_measurements(const std::filesystem::path& file, const MeasuredFile& measured) {
+  std::string text;
+  std::istringstream header(measured.header);
+  for (std::string line; std::getline(header, line);) text += "#" + line + "\n";
+  text += fmt::format("{}\n", heading);
+  for (const Measurement& m : measured.rows)
+    text += fmt::format("{},{:g},{},{:.0f},{:.4e},{:.2e}\n", m.case_name, m.poisson_ratio, m.model, m.cells, m.error,
+                        m.uncertainty);
+  write_named_file(file, text);
+}
+
+std::filesystem::path advise_folder() { return data_folder("advise", SPRINGPROOF_ADVISE_DIR); }
+
+bool hit(const Measurement& truth, const Prediction& p) {
+  return both_below(truth, p) || within(truth.error, p.error, allowed_factor);
+}
+
+bool inside(const Measurement& truth, const Prediction& p) {
+  return both_below(truth, p) || within(truth.error, p.error, p.factor);
+}
+
+HitRate hit_rate(const std::vector<Judged>& judged) {
+  HitRate out;
+  for (const Judged& j : judged) {
+    const bool good = hit(j.truth, j.predicted);
+    ++out.all;
+    out.hits += good;
+    out.inside += inside(j.truth, j.predicted);
+    out.beyond += j.predicted.beyond;
+    out.beyond_hits += j.predicted.beyond && good;
+  }
+  return out;
+}
+
+std::vector<Judged> judge_predictions(const std::vector<Measurement>& held_out, const std::string& name,
+                                      const PilotSize& size) {
+  std::vector<Judged> out;
+  for (const Experiment& e : held_out_cases()) {
+    if (case_name(e.file).find(name) == std::string::npos) continue;
+    for (const IsotropicMaterial& material : e.materials) {
+      const HeldOut of = held_out_of(held_out, case_name(e.file), material.poisson_ratio);
+      if (of.rows.empty()) continue;
+      const Pilot pilot = solve_pilot(e, material, of.models, size);
+      for (const Measurement& m : of.rows) {
+        const bool whole = e.body.is_voxels() && !e.body.cut;
+        const PilotModel* model = whole ? find_model(pilot, m.model + " cut=false") : nullptr;
+        if (!model) model = find_model(pilot, m.model);
+        if (model) out.push_back({m, predict(pilot, *model, m.cells)});
+      }
+    }
+  }
+  return out;
 }
 
 }  // namespace springproof

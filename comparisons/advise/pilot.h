@@ -1,7 +1,6 @@
 // A case solved on coarse lattices by its models: errors that finer lattices will have.
 #pragma once
 
-#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>

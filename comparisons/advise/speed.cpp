@@ -10,7 +10,6 @@
 #include "meshes/mesher/mesher.h"
 #include "msm/dynamics/dynamics.h"
 #include "msm/dynamics/time_step.h"
-#include "msm/models.h"
 #include "msm/statics/equilibrium.h"
 #include "problem/system/run_cost.h"
 
@@ -20,22 +19,6 @@ namespace {
 constexpr int small_block = 8, large_block = 16;      // cells along each edge
 constexpr double cells_stepped = 100 * 16 * 16 * 16;  // in all steps that are timed
 constexpr int repeats_timed = 3;                      // the least counts
-
-/// Held at the bottom layer of nodes, under its weight.
-BoundaryConditions held_body(const Network& network, double density, double edge) {
-  BoundaryConditions bc;
-  bc.fixed.assign(network.X.size(), 0);
-  bc.owner.assign(network.X.size(), -1);
-  bc.prescribed = NodalVectors::Zero(network.X.rows(), 3);
-  bc.external = masses(network, density) * Eigen::RowVector3d(0.3e-4, 0.5e-4, -1e-4);
-  const double bottom = network.X.col(2).minCoeff() + 0.5 * edge;
-  for (Eigen::Index n = 0; n < network.X.rows(); ++n)
-    if (network.X(n, 2) <= bottom) {
-      for (int c = 0; c < 3; ++c) bc.fixed[3 * n + c] = 1, bc.owner[3 * n + c] = 0;
-      bc.external.row(n).setZero();
-    }
-  return bc;
-}
 
 double seconds_of_steps(const MassSpringModel& model, double density, const BoundaryConditions& held, double safe_step,
                         long steps) {
@@ -57,7 +40,7 @@ double seconds_of_solve(const ModelParameters& p, const IsotropicMaterial& mater
     const MemoryGrowth memory;
     const double start = cpu_seconds();
     const MassSpringModel model = build_model(p, mesh, material);
-    const Equilibrium s = solve_linear(model, held_body(model.network, material.density, 1),
+    const Equilibrium s = solve_linear(model, clamped_bottom(model.network, material.density, 0.5),
                                        {LinearSolver::automatic, compared_residual, 2000});
     if (!s.ok) throw std::runtime_error(s.message);
     const double seconds = cpu_seconds() - start;
@@ -71,10 +54,26 @@ double seconds_of_solve(const ModelParameters& p, const IsotropicMaterial& mater
 
 double Speed::solve_seconds(double cells) const { return solve * std::pow(cells / solve_cells, solve_power); }
 
+BoundaryConditions clamped_bottom(const Network& network, double density, double depth) {
+  BoundaryConditions bc;
+  const Eigen::Index unknowns = network.X.size();
+  bc.fixed.assign(unknowns, 0);
+  bc.owner.assign(unknowns, -1);
+  bc.prescribed = NodalVectors::Zero(network.X.rows(), 3);
+  bc.external = masses(network, density) * Eigen::RowVector3d(0.3e-4, 0.5e-4, -1e-4);
+  const double bottom = network.X.col(2).minCoeff() + depth;
+  for (Eigen::Index n = 0; n < network.X.rows(); ++n)
+    if (network.X(n, 2) <= bottom) {
+      for (int c = 0; c < 3; ++c) bc.fixed[3 * n + c] = 1, bc.owner[3 * n + c] = 0;
+      bc.external.row(n).setZero();
+    }
+  return bc;
+}
+
 StepCost step_cost(const std::function<MassSpringModel()>& build, double density, double cells, double edge) try {
   const MassSpringModel model = build();
   const double safe_step = safe_time_step(model, density);
-  const BoundaryConditions held = held_body(model.network, density, edge);
+  const BoundaryConditions held = clamped_bottom(model.network, density, 0.5 * edge);
   const long steps = std::lround(std::ceil(cells_stepped / cells));
   double none = 1e9, some = 1e9;  // the least of each: what disturbs a run does not make it shorter
   for (int repeat = 0; repeat < repeats_timed; ++repeat) {

@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 
+#include "msm/embedding/boundary.h"
 #include "msm/models.h"
 #include "problem/material.h"
 
@@ -15,6 +16,10 @@ struct StepCost {
   double safe_step = 0;         ///< largest step over the edge of the cells [s/m]
   std::string failure;          ///< why it could not be measured
 };
+
+/// The nodes at the bottom (z <= depth [m] above the lowest) clamped, an oblique body force on all, small enough for
+/// linear behaviour.
+BoundaryConditions clamped_bottom(const Network& network, double density, double depth);
 
 /// Of the model that `build` returns, of so many cells of an edge [m]; the least of some repetitions counts.
 StepCost step_cost(const std::function<MassSpringModel()>& build, double density, double cells, double edge);

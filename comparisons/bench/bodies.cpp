@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "comparisons/advise/speed.h"
 #include "meshes/mesher/mesher.h"
 #include "meshes/voxels/cut_cells.h"
 #include "meshes/voxels/voxelise.h"
@@ -49,19 +50,7 @@ NodalVectors moved(const Network& network) {
 }
 
 BoundaryConditions clamped_bottom(const Network& network, double depth) {
-  BoundaryConditions bc;
-  const Eigen::Index unknowns = network.X.size();
-  bc.fixed.assign(unknowns, 0);
-  bc.owner.assign(unknowns, -1);
-  bc.prescribed = NodalVectors::Zero(network.X.rows(), 3);
-  bc.external = masses(network, density) * Eigen::RowVector3d(0.3e-4, 0.5e-4, -1e-4);
-  const double bottom = network.X.col(2).minCoeff() + depth;
-  for (Eigen::Index n = 0; n < network.X.rows(); ++n)
-    if (network.X(n, 2) <= bottom) {
-      for (int c = 0; c < 3; ++c) bc.fixed[3 * n + c] = 1, bc.owner[3 * n + c] = 0;
-      bc.external.row(n).setZero();
-    }
-  return bc;
+  return springproof::clamped_bottom(network, density, depth);
 }
 
 }  // namespace springproof::bench

@@ -26,8 +26,7 @@ MassSpringModel cut_ball(double cells, double poisson_ratio);
 /// The rest positions, each moved by a hundredth of an edge at most: smooth and reproducible.
 NodalVectors moved(const Network& network);
 
-/// The nodes at the bottom (z <= depth above the lowest) clamped, an oblique body force on all, small enough for linear
-/// behaviour.
+/// As springproof::clamped_bottom() (comparisons/advise/speed.h), of this density.
 BoundaryConditions clamped_bottom(const Network& network, double depth = 1e-6 * edge);
 
 }  // namespace springproof::bench

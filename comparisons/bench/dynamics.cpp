@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "comparisons/bench/baselines.h"
 #include "comparisons/bench/benches.h"
 #include "comparisons/bench/bodies.h"
 #include "comparisons/bench/interrupt.h"
-#include "comparisons/bench/lammps.h"
 #include "comparisons/bench/motion.h"
 #include "problem/system/streams.h"
 

@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 
 #include "comparisons/bench/bodies.h"
 #include "comparisons/bench/kernels/bench_kernel_choice.h"
-#include "msm/dynamics/lattice_motion.h"
 #include "msm/dynamics/list_motion.h"
 #include "msm/dynamics/time_step.h"
 #include "msm/kernels/cell_forces.h"

@@ -1,7 +1,6 @@
 // Implementations of an explicit time step that can be timed.
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <string>
 

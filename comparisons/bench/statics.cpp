@@ -4,11 +4,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "comparisons/bench/baselines.h"
 #include "comparisons/bench/benches.h"
 #include "comparisons/bench/bodies.h"
-#include "comparisons/bench/gamg.h"
 #include "comparisons/bench/interrupt.h"
-#include "comparisons/bench/relaxation.h"
 #include "meshes/mesher/mesher.h"
 #include "meshes/volume.h"
 #include "meshes/voxels/cut_cells.h"

@@ -131,21 +131,26 @@ Answer calculix_answer(const Question& q, const calculix::Deck& deck, const calc
   return {scalar_measures(s.field, probes, at(probe_points(q.experiment()))), at(q.points)};
 }
 
+/// The solution of a deck, which is said; nothing where it has none.
+std::optional<calculix::Solution> solved(const Question& q, const calculix::Deck& deck, const std::string& run,
+                                         Status& status) {
+  progress::phase(run);
+  calculix::Solution s = calculix::solve(deck, q.time_limit);
+  if (children_interrupted()) return {};
+  status.print(fmt::format("  {}: {}", run, s.ok ? fmt::format("{:.1f} s", s.seconds) : s.message));
+  return s.ok ? std::optional(std::move(s)) : std::nullopt;
+}
+
 std::optional<Opinion> calculix_equilibrium(const Question& q, Status& status) {
   std::vector<Answer> answers;
   Noise noise;
-  for (int g = 0; g < 3 && !children_interrupted(); ++g) {
+  for (int g = 0; g < 3; ++g) {
     const calculix::Deck deck = q.deck(g);
-    const std::string run = fmt::format("CalculiX {} {}", deck.element, q.grids[g]);
-    progress::phase(run);
-    const calculix::Solution s = calculix::solve(deck, q.time_limit);
-    if (children_interrupted()) break;
-    status.print(fmt::format("  {}: {}", run, s.ok ? fmt::format("{:.1f} s", s.seconds) : s.message));
-    if (!s.ok) return {};
-    answers.push_back(calculix_answer(q, deck, s));
-    noise = s.floor;
+    const auto s = solved(q, deck, fmt::format("CalculiX {} {}", deck.element, q.grids[g]), status);
+    if (!s) return {};
+    answers.push_back(calculix_answer(q, deck, *s));
+    noise = s->floor;
   }
-  if (children_interrupted()) return {};
   return opinion(q, answers, noise);
 }
 
@@ -202,17 +207,14 @@ std::optional<Opinion> calculix_motion(const Question& q, Status& status) {
     const std::size_t g = solutions.size() == 3 ? 1 : solutions.size();
     const calculix::Deck deck =
         calculix::make_deck(q.experiment(), q.material, *q.meshes[g], {.modes = 0, .steps = grid.steps});
-    const std::string run = fmt::format("CalculiX {} {}, {} steps", deck.element, q.grids[g], grid.steps);
-    progress::phase(run);
-    const calculix::Solution s = calculix::solve(deck, q.time_limit);
-    if (children_interrupted()) return {};
-    status.print(fmt::format("  {}: {}", run, s.ok ? fmt::format("{:.1f} s", s.seconds) : s.message));
-    if (!s.ok) return {};
+    const auto s =
+        solved(q, deck, fmt::format("CalculiX {} {}, {} steps", deck.element, q.grids[g], grid.steps), status);
+    if (!s) return {};
     fem::Solution& solution = solutions.emplace_back();
     solution.grid = grid;
     solution.ok = true;
-    solution.time = s.time;
-    solution.path = s.path;
+    solution.time = s->time;
+    solution.path = s->path;
   }
   return opinion(q, std::move(solutions), status);
 }

@@ -1,6 +1,7 @@
 #include "comparisons/calculix/run.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -22,16 +23,20 @@ ChildEnd run_in(const fs::path& file, const std::vector<std::string>& arguments,
   return run_child({file, arguments, folder, folder / "log", folder / "log", time_limit});
 }
 
+std::vector<std::string> words_of(const std::string& text) {
+  std::istringstream in(text);
+  std::vector<std::string> words;
+  for (std::string word; in >> word;) words.push_back(word);
+  return words;
+}
+
 /// The first line with *ERROR and the one after it.
 std::string error_in(const std::string& log) {
   const auto at = log.find("*ERROR");
   if (at == std::string::npos) return {};
   auto end = log.find('\n', at);
   if (end != std::string::npos) end = log.find('\n', end + 1);
-  std::istringstream words(log.substr(at, end == std::string::npos ? end : end - at));
-  std::string text;
-  for (std::string word; words >> word;) text += (text.empty() ? "" : " ") + word;
-  return text;
+  return fmt::format("{}", fmt::join(words_of(log.substr(at, end == std::string::npos ? end : end - at)), " "));
 }
 
 /// Fortran leaves out the E of an exponent of three digits.
@@ -75,6 +80,23 @@ void fill_solution(const Deck& deck, const Printed& printed, Solution& solution)
   solution.ok = true;
 }
 
+/// Reads the blocks of nodes' vectors.
+/// @param into where the vectors of a block are wanted, by its first line and the words in that; nullptr: not
+template <class Into>
+void read_blocks(std::istream& in, Eigen::Index nodes, const Into& into) {
+  NodalVectors* to = nullptr;
+  for (std::string line; std::getline(in, line);) {
+    const std::vector<std::string> word = words_of(line);
+    if (line.find(" for set ") != std::string::npos) {
+      to = into(line, word);
+    } else if (to && word.size() == 4) {
+      const long node = std::stol(word[0]) - 1;
+      if (node < 0 || node >= nodes) throw std::runtime_error(fmt::format("ccx printed a node {}", node + 1));
+      for (int c = 0; c < 3; ++c) (*to)(node, c) = number(word[1 + c]);
+    }
+  }
+}
+
 }  // namespace
 
 fs::path program() { return program_on_path("ccx"); }
@@ -93,26 +115,12 @@ std::string version() {
 Printed read_dat(std::istream& in, Eigen::Index nodes) {
   const double missing = std::numeric_limits<double>::quiet_NaN();
   Printed printed{NodalVectors::Constant(nodes, 3, missing), NodalVectors::Zero(nodes, 3), 0};
-  NodalVectors* into = nullptr;
-  for (std::string line; std::getline(in, line);) {
-    std::istringstream words(line);
-    std::vector<std::string> word;
-    for (std::string w; words >> w;) word.push_back(w);
-    if (line.find(" for set ") != std::string::npos) {
-      into = nullptr;
-      if (word[0] == "displacements" && line.find(" ALL_NODES ") != std::string::npos) {
-        into = &printed.displacement;
-        printed.time = number(word.back());
-      } else if (word[0] == "forces" && line.find(" HELD_NODES ") != std::string::npos) {
-        into = &printed.force;
-      }
-      continue;
-    }
-    if (!into || word.size() != 4) continue;
-    const long node = std::stol(word[0]) - 1;
-    if (node < 0 || node >= nodes) throw std::runtime_error(fmt::format("ccx printed a node {}", node + 1));
-    for (int c = 0; c < 3; ++c) (*into)(node, c) = number(word[1 + c]);
-  }
+  read_blocks(in, nodes, [&](const std::string& line, const std::vector<std::string>& word) -> NodalVectors* {
+    if (word[0] == "forces" && line.find(" HELD_NODES ") != std::string::npos) return &printed.force;
+    if (word[0] != "displacements" || line.find(" ALL_NODES ") == std::string::npos) return nullptr;
+    printed.time = number(word.back());
+    return &printed.displacement;
+  });
   if (!printed.displacement.allFinite()) throw std::runtime_error("ccx printed no displacement for some nodes");
   return printed;
 }
@@ -123,21 +131,12 @@ std::vector<std::pair<double, NodalVectors>> read_path(std::istream& in, const N
   const auto end_block = [&] {
     if (!path.empty()) path.back().second = at_probes * u;
   };
-  bool of_probes = false;
-  for (std::string line; std::getline(in, line);) {
-    std::istringstream words(line);
-    std::vector<std::string> word;
-    for (std::string w; words >> w;) word.push_back(w);
-    if (line.find(" for set ") != std::string::npos) {
-      end_block();
-      of_probes = word[0] == "displacements" && line.find(" AT_PROBES ") != std::string::npos;
-      if (of_probes) path.emplace_back(number(word.back()), NodalVectors());
-    } else if (of_probes && word.size() == 4) {
-      const long node = std::stol(word[0]) - 1;
-      if (node < 0 || node >= u.rows()) throw std::runtime_error(fmt::format("ccx printed a node {}", node + 1));
-      for (int c = 0; c < 3; ++c) u(node, c) = number(word[1 + c]);
-    }
-  }
+  read_blocks(in, u.rows(), [&](const std::string& line, const std::vector<std::string>& word) -> NodalVectors* {
+    end_block();
+    if (word[0] != "displacements" || line.find(" AT_PROBES ") == std::string::npos) return nullptr;
+    path.emplace_back(number(word.back()), NodalVectors());
+    return &u;
+  });
   end_block();
   return path;
 }
@@ -148,9 +147,7 @@ std::vector<double> read_frequencies(std::istream& in) {
   for (std::string line; std::getline(in, line);) {
     if (line.find("E I G E N V A L U E") != std::string::npos) table = true;
     if (line.find("P A R T I C I P A T I O N") != std::string::npos) break;
-    std::istringstream words(line);
-    std::vector<std::string> word;
-    for (std::string w; words >> w;) word.push_back(w);
+    const std::vector<std::string> word = words_of(line);
     if (table && word.size() == 5 && word[0] == std::to_string(frequencies.size() + 1))
       frequencies.push_back(number(word[3]));
   }

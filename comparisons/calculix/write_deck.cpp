@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <set>
 
-#include "comparisons/calculix/deck_parts.h"
+#include "comparisons/calculix/deck.h"
 #include "problem/case_file/measures.h"
 
 namespace springproof::calculix {

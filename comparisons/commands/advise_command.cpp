@@ -1,14 +1,15 @@
-#include "comparisons/commands/advise_command.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <string>
 
-#include "comparisons/advise/check.h"
+#include "comparisons/advise/advice.h"
 #include "comparisons/advise/measure.h"
+#include "comparisons/commands/commands.h"
 #include "comparisons/sweep/find_cases.h"
 #include "comparisons/sweep/status.h"
 #include "msm/parameters/model_table.h"
@@ -64,7 +65,25 @@ void check_models(const std::vector<std::string>& models) {
   for (const std::string& name : models) resolve({name, {}, name, {}});
 }
 
-}  // namespace
+/// `springproof advise CASE`.
+class AdviseCommand {
+ public:
+  void add_options(CLI::App& command);
+  /// @return 0: a model reaches the error within the budget; 1: none does; with --check 0 if nine of ten predictions
+  ///   are hits; with --measure-held-out 130 if interrupted.
+  /// @throws InputError for unusable input.
+  int run() const;
+
+ private:
+  Forecast forecast() const;
+  int check() const;
+
+  std::string case_, poisson_ratios_, check_name_;
+  bool check_ = false, json_ = false;
+  double pilot_cells_ = 1500;
+  Wish wish_;
+  std::filesystem::path measure_held_out_;
+};
 
 void AdviseCommand::add_options(CLI::App& command) {
   command.add_option("CASE", case_, "case file (*.toml) or built-in name (springproof list)");
@@ -156,5 +175,9 @@ int AdviseCommand::run() const {
   to_stdout("{}", json_ ? json_of(advice).dump(2) + "\n" : text_of(advice));
   return !advice.choices.empty() && advice.choices.front().suits() ? 0 : 1;
 }
+
+}  // namespace
+
+RunCommand advise_command(CLI::App& parser) { return made<AdviseCommand>(parser); }
 
 }  // namespace springproof

@@ -1,11 +1,23 @@
-#include "comparisons/commands/bench_command.h"
-
 #include <CLI/CLI.hpp>
 #include <csignal>
 
+#include "comparisons/commands/commands.h"
 #include "problem/processes/child.h"
 
 namespace springproof {
+namespace {
+
+/// `springproof bench ...`: its options are parsed by the program that it starts.
+class BenchCommand {
+ public:
+  void add_options(CLI::App& command);
+  /// @return the program's status.
+  /// @throws std::runtime_error if it is not there or is killed.
+  int run() const;
+
+ private:
+  const CLI::App* command_ = nullptr;
+};
 
 void BenchCommand::add_options(CLI::App& command) {
   command.set_help_flag();
@@ -24,5 +36,9 @@ int BenchCommand::run() const {
   if (end.kind == ChildEnd::killed) throw std::runtime_error("springproof-bench " + words_for(end));
   return end.status;
 }
+
+}  // namespace
+
+RunCommand bench_command(CLI::App& parser) { return made<BenchCommand>(parser); }
 
 }  // namespace springproof

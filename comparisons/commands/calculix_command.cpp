@@ -1,10 +1,12 @@
-#include "comparisons/commands/calculix_command.h"
-
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <string>
+#include <vector>
 
+#include "comparisons/calculix/cross_check.h"
+#include "comparisons/commands/commands.h"
 #include "comparisons/sweep/find_cases.h"
 #include "problem/system/number_checks.h"
 
@@ -15,7 +17,18 @@ Cells to_cells(const std::vector<int>& cells) {
   return cells.empty() ? Cells{0, 0, 0} : Cells{cells[0], cells[1], cells[2]};
 }
 
-}  // namespace
+/// `springproof cross-check CASE`.
+class CrossCheckCommand {
+ public:
+  void add_options(CLI::App& command);
+  /// @return the worst CrossCheckStatus of the cases.
+  int run() const;
+
+ private:
+  std::vector<std::string> cases_;
+  std::vector<int> cells_;
+  CrossCheckOptions options_;
+};
 
 void CrossCheckCommand::add_options(CLI::App& command) {
   command.add_option("CASE", cases_, "case files (*.toml), folders of them, or built-in names (springproof list)")
@@ -50,5 +63,9 @@ int CrossCheckCommand::run() const {
   }
   return worst;
 }
+
+}  // namespace
+
+RunCommand cross_check_command(CLI::App& parser) { return made<CrossCheckCommand>(parser); }
 
 }  // namespace springproof

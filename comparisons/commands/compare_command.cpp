@@ -1,11 +1,42 @@
-#include "comparisons/commands/compare_command.h"
+#include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
 
-#include "comparisons/commands/live_page.h"
+#include "comparisons/commands/commands.h"
 #include "comparisons/sweep/find_cases.h"
+#include "comparisons/sweep/suite.h"
+#include "comparisons/sweep/sweep_report.h"
+#include "problem/processes/child.h"
+#include "problem/system/input_error.h"
 
 namespace springproof {
+namespace {
+
+/// The page in which bodies can be pulled, which --live copies beside a report.
+/// @throws InputError saying how it is built, where it is not.
+std::filesystem::path live_page() {
+  const std::filesystem::path page = data_folder("live", SPRINGPROOF_LIVE_DIR) / "live.html";
+  if (!std::filesystem::exists(page))
+    throw InputError(
+        fmt::format("--live: the live page is not built, {} is not there (in the sources: "
+                    "comparisons/live/build.sh, which needs Debian's packages emscripten and node-acorn)",
+                    page.string()));
+  return page;
+}
+
+/// `springproof compare CASE...`.
+class CompareCommand {
+ public:
+  void add_options(CLI::App& command);
+  /// @return as compare().
+  int run() const;
+
+ private:
+  std::vector<std::string> names_;
+  SuiteOptions options_;
+};
 
 void CompareCommand::add_options(CLI::App& command) {
   command.add_option("CASE", names_, "case files (*.toml), folders of them, or built-in names (springproof list)")
@@ -43,5 +74,38 @@ void CompareCommand::add_options(CLI::App& command) {
 }
 
 int CompareCommand::run() const { return compare(find_cases(names_), options_); }
+
+/// `springproof report FOLDER`.
+class ReportCommand {
+ public:
+  void add_options(CLI::App& command);
+  /// @return as report_sweep.
+  int run() const;
+
+ private:
+  SweepReportOptions options_;
+};
+
+void ReportCommand::add_options(CLI::App& command) {
+  command.add_option("FOLDER", options_.folder, "what `springproof compare --shard K/N --out FOLDER` wrote")
+      ->required();
+  command.add_flag("--partial", options_.partial,
+                   "also where parts are missing: a report of those that are there, with exit status 1");
+  command.add_flag_callback(
+      "--live", [this] { options_.live_page = live_page(); },
+      "also copy the page in which the bodies can be pulled (live.html) beside the report, with a link");
+  command.footer(
+      "Computes nothing. Missing parts are named with their shards, which are to be started again.\n"
+      "Exit status: 0 every expectation holds, 1 one does not or cannot be judged, 2 parts are missing, or there is no "
+      "sweep.");
+}
+
+int ReportCommand::run() const { return report_sweep(options_); }
+
+}  // namespace
+
+RunCommand compare_command(CLI::App& parser) { return made<CompareCommand>(parser); }
+
+RunCommand report_command(CLI::App& parser) { return made<ReportCommand>(parser); }
 
 }  // namespace springproof

@@ -1,12 +1,12 @@
-#include "comparisons/commands/diff_command.h"
-
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <map>
 
+#include "comparisons/commands/commands.h"
 #include "comparisons/judge/differences.h"
 #include "problem/system/streams.h"
 
@@ -45,7 +45,18 @@ void print_changed(const Differences& all) {
   if (all.changed.size() > most_lines) to_stdout("... and {} more\n", all.changed.size() - most_lines);
 }
 
-}  // namespace
+/// `springproof diff FIRST SECOND`.
+class DiffCommand {
+ public:
+  void add_options(CLI::App& command);
+  /// @return 0: no number differs by more than the tolerance, and both have the same ones; 1: else.
+  /// @throws InputError if a folder holds no results.
+  int run() const;
+
+ private:
+  std::filesystem::path first_, second_;
+  double tolerance_ = 1e-9;
+};
 
 void DiffCommand::add_options(CLI::App& command) {
   command.add_option("FIRST", first_, "what `springproof compare` wrote")->required();
@@ -84,5 +95,9 @@ int DiffCommand::run() const {
       for (const auto& [name, words] : side->listed) to_stdout("\nnu of {} is {}\n", name, words);
   return all.none() ? 0 : 1;
 }
+
+}  // namespace
+
+RunCommand diff_command(CLI::App& parser) { return made<DiffCommand>(parser); }
 
 }  // namespace springproof

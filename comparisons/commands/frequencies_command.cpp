@@ -1,22 +1,22 @@
-#include "comparisons/commands/frequencies_command.h"
-
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <filesystem>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
+#include "comparisons/commands/commands.h"
 #include "comparisons/judge/calibration.h"
+#include "comparisons/models/frequencies.h"
 #include "comparisons/report/words.h"
 #include "comparisons/results/records.h"
 #include "comparisons/run/prepare.h"
 #include "comparisons/sweep/find_cases.h"
 #include "comparisons/sweep/status.h"
-#include "fem_reference/exchange/reference.h"
 #include "meshes/field.h"
 #include "problem/files/files.h"
 #include "problem/processes/child.h"
@@ -186,7 +186,19 @@ Experiment with_settings(Experiment e, const std::vector<double>& wanted) {
   return e;
 }
 
-}  // namespace
+/// `springproof frequencies CASE`.
+class FrequenciesCommand {
+ public:
+  void add_options(CLI::App& command);
+  /// @return 0, or 1 if the reference or a model has no result; 130 if interrupted.
+  int run() const;
+
+ private:
+  std::string case_, out_;
+  std::vector<double> poisson_ratios_;
+  FrequencyOptions options_;
+  bool vtu_ = false;
+};
 
 void FrequenciesCommand::add_options(CLI::App& command) {
   command.add_option("CASE", case_, "case file (*.toml) or built-in name (springproof list)")->required();
@@ -258,5 +270,9 @@ int FrequenciesCommand::run() const try {
   if (children_interrupted()) return interrupted_status;
   throw;
 }
+
+}  // namespace
+
+RunCommand frequencies_command(CLI::App& parser) { return made<FrequenciesCommand>(parser); }
 
 }  // namespace springproof

@@ -1,12 +1,13 @@
-#include "comparisons/commands/identify_command.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <string>
+#include <vector>
 
+#include "comparisons/commands/commands.h"
 #include "comparisons/identify/identify.h"
 #include "comparisons/sweep/find_cases.h"
 #include "comparisons/sweep/folder_lock.h"
@@ -52,7 +53,20 @@ std::vector<Identification> wanted_of(const Experiment& e, const std::vector<std
   return all;
 }
 
-}  // namespace
+/// `springproof identify CASE`.
+class IdentifyCommand {
+ public:
+  void add_options(CLI::App& command);
+  /// @return 0, or 1 if one has no result; 130 if interrupted.
+  int run() const;
+
+ private:
+  std::string case_, out_ = "springproof-identify";
+  std::vector<std::string> only_;
+  std::vector<double> start_;
+  int synthetic_ = 0;
+  bool resume_ = false, json_ = false;
+};
 
 void IdentifyCommand::add_options(CLI::App& command) {
   command.add_option("CASE", case_, "case file (*.toml) or built-in name (springproof list), with [[identify]]")
@@ -92,5 +106,9 @@ int IdentifyCommand::run() const {
   if (json_) to_stdout("{}", json_text(all));
   return std::all_of(all.begin(), all.end(), [](const Identified& i) { return i.ok; }) ? 0 : 1;
 }
+
+}  // namespace
+
+RunCommand identify_command(CLI::App& parser) { return made<IdentifyCommand>(parser); }
 
 }  // namespace springproof

@@ -2,27 +2,10 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdlib>
-#include <functional>
-#include <memory>
 #include <vector>
 
-#include "comparisons/commands/advise_command.h"
-#include "comparisons/commands/bench_command.h"
-#include "comparisons/commands/calculix_command.h"
-#include "comparisons/commands/compare_command.h"
-#include "comparisons/commands/describe/describe_command.h"
-#include "comparisons/commands/describe/list_command.h"
-#include "comparisons/commands/describe/versions.h"
-#include "comparisons/commands/diff_command.h"
-#include "comparisons/commands/export/export_command.h"
-#include "comparisons/commands/frequencies_command.h"
-#include "comparisons/commands/identify_command.h"
-#include "comparisons/commands/material/homogenise_command.h"
-#include "comparisons/commands/material/material_command.h"
-#include "comparisons/commands/new_command.h"
-#include "comparisons/commands/pictures_command.h"
-#include "comparisons/commands/report_command.h"
-#include "comparisons/commands/reproduce_command.h"
+#include "comparisons/commands/commands.h"
+#include "comparisons/commands/versions.h"
 #include "msm/gpu/gpu.h"
 #include "problem/system/streams.h"
 
@@ -30,56 +13,48 @@ namespace {
 
 using namespace springproof;
 
-/// What runs a subcommand once its options, which are added to the parser, have been read.
-template <class Command>
-std::function<int()> made(CLI::App& command) {
-  const auto object = std::make_shared<Command>();
-  object->add_options(command);
-  return [object] { return object->run(); };
-}
-
 enum class Reads { nothing, options, bodies };  ///< of bodies some are scripts
 
 struct Subcommand {
   const char* name;
   const char* what;
-  std::function<int()> (*make)(CLI::App&);
+  RunCommand (*make)(CLI::App&);
   Reads reads = Reads::options;
 };
 
 constexpr Subcommand subcommands[] = {
     {"compare", "Run cases with every model and the FEM reference; write results.csv, results.json and report.html",
-     made<CompareCommand>, Reads::bodies},
+     compare_command, Reads::bodies},
     {"report", "The results of a comparison whose parts were computed by shards: compare --shard, on several machines",
-     made<ReportCommand>},
-    {"list", "Built-in cases, models and measures; of cases named: their files", made<ListCommand>, Reads::nothing},
+     report_command},
+    {"list", "Built-in cases, models and measures; of cases named: their files", list_command, Reads::nothing},
     {"new", "A case of a body of your own, ready to run: its size, sides, resolutions, loads of 1 % strain",
-     made<NewCommand>, Reads::bodies},
+     new_command, Reads::bodies},
     {"material",
      "Any two moduli in: spring constants, kappa, safe time step, validity range, and the moduli measured back",
-     made<MaterialCommand>},
+     material_command},
     {"homogenise",
      "Effective moduli of the infinite periodic network of a model: "
      "stiffness, anisotropy, mean and spread over seeds",
-     made<HomogeniseCommand>},
+     homogenise_command},
     {"export", "A case, or a body alone, for another program: the springs of its body, or an input deck",
-     made<ExportCommand>, Reads::bodies},
-    {"cross-check", "The same case by CalculiX and by our FEM reference, with both uncertainties",
-     made<CrossCheckCommand>, Reads::bodies},
+     export_command, Reads::bodies},
+    {"cross-check", "The same case by CalculiX and by our FEM reference, with both uncertainties", cross_check_command,
+     Reads::bodies},
     {"frequencies", "Natural frequencies and modes of a case's models beside the finite element reference's",
-     made<FrequenciesCommand>, Reads::bodies},
+     frequencies_command, Reads::bodies},
     {"identify", "Numbers of a case, such as moduli and densities, from what was measured; what it does not tell",
-     made<IdentifyCommand>, Reads::bodies},
-    {"pictures", "The figures and bodies of a report as PNG files, without a display", made<PicturesCommand>},
+     identify_command, Reads::bodies},
+    {"pictures", "The figures and bodies of a report as PNG files, without a display", pictures_command},
     {"reproduce",
      "The figures and tables of a paper, computed and drawn anew, each with a verdict: SVG, PDF, CSV, a page",
-     made<ReproduceCommand>},
-    {"diff", "Which numbers of two results folders differ, by how much, beyond which uncertainty", made<DiffCommand>},
-    {"bench", "Measure what things cost, each beside its baseline (springproof bench --help)", made<BenchCommand>},
+     reproduce_command},
+    {"diff", "Which numbers of two results folders differ, by how much, beyond which uncertainty", diff_command},
+    {"bench", "Measure what things cost, each beside its baseline (springproof bench --help)", bench_command},
     {"advise", "Which models and resolutions reach an error within a budget, predicted from coarse solves of the case",
-     made<AdviseCommand>, Reads::bodies},
-    {"describe", "The command line as a man page, or as completion for bash; the keys of a case file",
-     made<DescribeCommand>, Reads::nothing},
+     advise_command, Reads::bodies},
+    {"describe", "The command line as a man page, or as completion for bash; the keys of a case file", describe_command,
+     Reads::nothing},
 };
 
 constexpr const char* tasks =
@@ -101,7 +76,7 @@ int parse_and_run(int argc, char** argv) {
   struct Ready {
     CLI::App* command;
     Reads reads;
-    std::function<int()> run;
+    RunCommand run;
   };
   std::vector<Ready> commands;
   for (const Subcommand& s : subcommands) {

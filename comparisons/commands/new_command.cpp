@@ -1,5 +1,3 @@
-#include "comparisons/commands/new_command.h"
-
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -10,7 +8,10 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
+#include <vector>
 
+#include "comparisons/commands/commands.h"
 #include "comparisons/sweep/status.h"
 #include "meshes/mesher/mesher.h"
 #include "meshes/patches/rule_region.h"
@@ -18,6 +19,7 @@
 #include "meshes/volume.h"
 #include "problem/case_file/experiment.h"
 #include "problem/case_file/keys.h"
+#include "problem/material.h"
 #include "problem/system/number_checks.h"
 #include "problem/system/streams.h"
 
@@ -172,7 +174,21 @@ std::string case_of(const Measured& m, const MeshRequest& request, const std::st
          "# measures = [\"displacement_error\", \"reaction\", \"stress_error\", \"stress_peak\"]\n";
 }
 
-}  // namespace
+/// `springproof new BODY > case.toml`.
+class NewCommand {
+ public:
+  void add_options(CLI::App& command);
+  /// Prints the case.  @return 0.
+  /// @throws InputError if the file is no body, or the moduli cannot be used.
+  int run() const;
+
+ private:
+  std::string body_;
+  double scale_ = 1;
+  std::vector<double> size_;
+  Moduli moduli_;
+  double density_ = 1000;
+};
 
 void NewCommand::add_options(CLI::App& command) {
   command.add_option("BODY", body_, "closed .stl, .obj or .ply, .msh, .step, .brep, or a script for gmsh (*.geo)")
@@ -214,5 +230,9 @@ int NewCommand::run() const {
   to_stdout("{}", text);
   return 0;
 }
+
+}  // namespace
+
+RunCommand new_command(CLI::App& parser) { return made<NewCommand>(parser); }
 
 }  // namespace springproof

@@ -1,10 +1,11 @@
-#include "comparisons/commands/pictures_command.h"
-
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <chrono>
+#include <filesystem>
+#include <string>
 
+#include "comparisons/commands/commands.h"
 #include "comparisons/judge/differences.h"
 #include "comparisons/report/png_page.h"
 #include "comparisons/sweep/status.h"
@@ -26,7 +27,19 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
-}  // namespace
+/// `springproof pictures FOLDER`.
+class PicturesCommand {
+ public:
+  void add_options(CLI::App& command);
+  /// @return 0: every picture was written; 1: one was not.
+  /// @throws InputError if there is no report in the folder, or no Chromium.
+  int run() const;
+
+ private:
+  std::filesystem::path folder_ = "springproof-report";
+  std::string only_;
+  double time_limit_ = 600;
+};
 
 void PicturesCommand::add_options(CLI::App& command) {
   command.add_option("FOLDER", folder_, "what `springproof compare` wrote")->capture_default_str();
@@ -86,5 +99,9 @@ int PicturesCommand::run() const {
   if (written == 0 && failed == 0) to_stderr("no picture has '{}' in its name\n", only_);
   return failed == 0 && written > 0 ? 0 : 1;
 }
+
+}  // namespace
+
+RunCommand pictures_command(CLI::App& parser) { return made<PicturesCommand>(parser); }
 
 }  // namespace springproof

@@ -1,13 +1,16 @@
-#include "comparisons/commands/reproduce_command.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
 
+#include "comparisons/commands/commands.h"
 #include "comparisons/reproduce/reproduce.h"
 #include "comparisons/sweep/find_cases.h"
+#include "comparisons/sweep/suite.h"
 #include "problem/system/input_error.h"
 #include "problem/system/streams.h"
 
@@ -29,7 +32,21 @@ std::string names_of_papers() {
   return names;
 }
 
-}  // namespace
+/// `springproof reproduce PAPER`.
+class ReproduceCommand {
+ public:
+  void add_options(CLI::App& command);
+
+  /// @return as `springproof compare`; with --from 0.
+  /// @throws InputError if there is no such paper or figure, or --from holds results of none of its figures.
+  int run();
+
+ private:
+  std::string paper_;
+  std::vector<std::string> figures_;
+  std::vector<std::filesystem::path> from_;
+  SuiteOptions options_;
+};
 
 void ReproduceCommand::add_options(CLI::App& command) {
   options_.out.clear();
@@ -77,5 +94,9 @@ int ReproduceCommand::run() {
   to_stdout("figures: {}\n", (options_.out / "reproduce.html").string());
   return status;
 }
+
+}  // namespace
+
+RunCommand reproduce_command(CLI::App& parser) { return made<ReproduceCommand>(parser); }
 
 }  // namespace springproof

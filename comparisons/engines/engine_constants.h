@@ -1,6 +1,11 @@
 // What the soft bodies of real-time engines take for a material: docs/engines.md.
 #pragma once
 
+#include <array>
+#include <vector>
+
+#include "comparisons/results/facts.h"
+#include "meshes/mesh.h"
 #include "problem/material.h"
 
 namespace springproof {
@@ -35,5 +40,26 @@ double largest_sweep_step(double safe_time_step);
 /// an eighth of a cube's mass at each of its corners: 2 / omega of the stiffest single cube, which bounds all meshes
 /// (Irons and Treharne).
 double safe_time_step_of_tetrahedra(const IsotropicMaterial& material, double edge);
+
+/// Five tetrahedra of each cube, of positive volume: one between every second corner, of a third of the volume, and one
+/// at each of the other four corners.  Neighbours are mirror images of each other, so that their faces are cut along
+/// the same diagonals and no direction is preferred.
+/// @param X    nodes [m], n x 3
+/// @param edge of the cubes [m], which are cells of one lattice along the axes
+std::vector<Tetrahedron> five_tetrahedra(const NodalVectors& X, const std::vector<Hexahedron>& cells, double edge);
+
+struct EngineFacts {
+  const IsotropicMaterial& material;
+  double edge;                  ///< of the cells [m]
+  std::array<double, 3> inner;  ///< stiffness of springs inside the lattice [N/m]: cell edges, face diagonals, cube
+                                ///< diagonals; 0: none
+  double correction;            ///< bulk modulus that the model adds to its springs' [Pa]
+  double frequency;             ///< of a vibration [Hz]
+};
+
+/// Compliances of springs inside, on the surface and on the edges of a lattice, of the constraint on 6 V of a corner
+/// tetrahedron (a sixth of a cell) that adds the correction, Bullet's constants, the damping by implicit Euler and the
+/// smallest step of single precision 1 m from the origin under 9.81 m/s^2.
+FactGroup facts_of(const EngineFacts& facts);
 
 }  // namespace springproof

@@ -2,11 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <iterator>
 
 #include "comparisons/engines/engine_constants.h"
-#include "comparisons/engines/five_tetrahedra.h"
 #include "meshes/locate/outer_facets.h"
 #include "msm/exchange/springs_document.h"
 #include "msm/parameters/model_table.h"

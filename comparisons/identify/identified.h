@@ -79,4 +79,7 @@ std::string text_of(const Identified& identified);
 /// The same as a page of its own.
 std::string identify_page(const std::vector<Identified>& all);
 
+/// What the values do not tell, what the limits leave out, whether the values agree, and how many predictions hold.
+std::vector<std::string> sentences_of(const Identified& identified);
+
 }  // namespace springproof

@@ -9,10 +9,8 @@
 #include <numeric>
 #include <random>
 
-#include "comparisons/identify/identified_sentences.h"
 #include "comparisons/identify/least_squares.h"
 #include "comparisons/identify/model_values.h"
-#include "comparisons/judge/simulated_value.h"
 #include "comparisons/judge/validation.h"
 #include "problem/case_file/measures.h"
 

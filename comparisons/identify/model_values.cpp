@@ -7,7 +7,7 @@
 #include <numeric>
 #include <set>
 
-#include "comparisons/judge/simulated_value.h"
+#include "comparisons/judge/validation.h"
 #include "comparisons/prepare/input_checksum.h"
 #include "comparisons/results/records_json.h"
 #include "comparisons/run/case_run.h"

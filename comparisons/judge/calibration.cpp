@@ -11,6 +11,9 @@
 #include "problem/files/files.h"
 
 namespace springproof {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(CalibrationShare, kind, quantities, inside, median_ratio, largest_ratio)
+
 namespace {
 
 using Json = nlohmann::json;
@@ -95,14 +98,6 @@ CalibrationShare share_of(const std::string& kind, const std::vector<KnownQuanti
   return share;
 }
 
-Json json_of(const CalibrationShare& s) {
-  return {{"kind", s.kind},
-          {"quantities", s.quantities},
-          {"inside", s.inside},
-          {"median_ratio", s.median_ratio},
-          {"largest_ratio", s.largest_ratio}};
-}
-
 Json json_of(const KnownQuantity& q) {
   return {{"case", q.case_name},
           {"poisson_ratio", q.poisson_ratio},
@@ -118,10 +113,9 @@ Json json_of(const KnownQuantity& q) {
           {"note", q.note}};
 }
 
-template <class T>
-Json list(const std::vector<T>& items) {
+Json list(const std::vector<KnownQuantity>& quantities) {
   Json out = Json::array();
-  for (const T& item : items) out.push_back(json_of(item));
+  for (const KnownQuantity& q : quantities) out.push_back(json_of(q));
   return out;
 }
 
@@ -174,7 +168,7 @@ std::vector<CalibrationShare> calibration_shares(const std::vector<KnownQuantity
 
 Json calibration_json(const std::vector<KnownQuantity>& quantities) {
   if (quantities.empty()) return nullptr;
-  return {{"shares", list(calibration_shares(quantities))}, {"quantities", list(quantities)}};
+  return {{"shares", calibration_shares(quantities)}, {"quantities", list(quantities)}};
 }
 
 std::string calibration_table(const std::vector<KnownQuantity>& quantities) {

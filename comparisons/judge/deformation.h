@@ -17,4 +17,25 @@ struct DeformationSize {
 /// cell.
 DeformationSize deformation_size(const Mesh& mesh, const NodalVectors& displacement, Kinematics kinematics);
 
+/// The displacement (n x 3 [m], of points X) less the rigid motion nearest to it in the weighted L2 norm: a + w x X
+/// under linear kinematics, a rotation and a translation under finite ones.
+NodalVectors less_rigid_motion(const NodalVectors& X, const NodalVectors& u, const Eigen::VectorXd& weights,
+                               Kinematics kinematics);
+
+/// Share of the displacement below which what is left beyond a rigid motion counts alone.
+inline constexpr double carried_share = 0.1;
+
+/// What errors of a displacement are relative to.
+struct DisplacementScale {
+  double mean = 0;     ///< root of the mean square over the volume [m]
+  double largest = 0;  ///< at a node [m]
+  double share = 1;    ///< of the whole displacement's mean; 1: the whole, unless supports carry the body along
+};
+
+/// Of the displacement at the nodes of a mesh.  Where `moved` supports carry the body along, so that less than
+/// carried_share of its displacement is no rigid motion, it is the scale of that part: a lattice without stiffness
+/// would be right in the ride.
+DisplacementScale displacement_scale(const Mesh& mesh, const NodalVectors& displacement, bool moved,
+                                     Kinematics kinematics);
+
 }  // namespace springproof

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <deque>
 #include <limits>
-#include <map>
 #include <nlohmann/json.hpp>
 
 #include "comparisons/judge/reference_value.h"

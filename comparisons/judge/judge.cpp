@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "comparisons/judge/measures.h"
-
 namespace springproof {
 namespace {
 

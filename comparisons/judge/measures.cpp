@@ -101,10 +101,7 @@ std::map<std::string, double> values_of(const std::map<std::string, ReferenceVal
 }
 
 double displacement_error(const NodalVectors& u, const NodalVectors& v, const Eigen::VectorXd& weights) {
-  const auto norm = [&](const NodalVectors& w) {
-    return std::sqrt((w.rowwise().squaredNorm().array() * weights.array()).sum());
-  };
-  return norm(u - v) / norm(v);
+  return weighted_norm(u - v, weights) / weighted_norm(v, weights);
 }
 
 double section_distance(const Mesh& mesh, const Section& section, const NodalVectors& u, const NodalVectors& v) {

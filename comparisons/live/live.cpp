@@ -2,7 +2,6 @@
 
 #include <array>
 #include <exception>
-#include <optional>
 
 #include "comparisons/live/live_body.h"
 

@@ -8,8 +8,8 @@
 
 #include "comparisons/reference/region_measures.h"
 #include "msm/embedding/cut_lattice.h"
+#include "msm/laws/anchors.h"
 #include "msm/laws/filled_volume.h"
-#include "msm/laws/turned_bond.h"
 
 namespace springproof {
 namespace {

@@ -13,7 +13,6 @@
 #include "comparisons/run/model_samples.h"
 #include "comparisons/run/prepare.h"
 #include "comparisons/run/run_json.h"
-#include "comparisons/sweep/chosen_cases.h"
 #include "comparisons/sweep/find_cases.h"
 #include "comparisons/sweep/folder_lock.h"
 #include "comparisons/sweep/suite.h"

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "comparisons/prepare/prepared_case.h"
+#include "comparisons/results/records.h"
 #include "meshes/mesh.h"
 #include "msm/parameters/model_table.h"
 #include "problem/case_file/experiment.h"
@@ -25,5 +27,16 @@ void check_supports(const Experiment& experiment, const Mesh& surface);
 
 /// @throws InputError for an [[expect]] of stresses that are not recovered of its model.
 void check_stresses(const Experiment& experiment, const std::vector<ModelParameters>& models);
+
+/// Nominal strains along the axes that pairs of moved supports impose, the most negative and the most positive
+/// (msm/measure/validity.h); 0: none.
+struct ImposedStrain {
+  double compression = 0, tension = 0;
+};
+ImposedStrain imposed_strain(const PreparedCase& prepared);
+
+/// Of large displacements: every model of whole cells and every Poisson's ratio at which the lattice is not stable up
+/// to 1.25 times the imposed strain, with free or with held sides.  Forces impose no strain that is known before.
+std::vector<LatticeLimit> lattice_limits(const PreparedCase& prepared);
 
 }  // namespace springproof

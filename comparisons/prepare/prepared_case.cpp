@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <map>
 
 #include "msm/dynamics/time_step.h"
 #include "msm/embedding/boundary.h"

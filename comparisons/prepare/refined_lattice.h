@@ -1,9 +1,6 @@
 // Lattices that are refined until they promise an accuracy.
 #pragma once
 
-#include <set>
-#include <string>
-
 #include "comparisons/prepare/prepared_case.h"
 
 namespace springproof {

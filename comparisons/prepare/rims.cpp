@@ -1,7 +1,6 @@
 #include "comparisons/prepare/rims.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <set>
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "comparisons/judge/deformation.h"
 #include "comparisons/judge/measures.h"
 #include "comparisons/judge/reference_value.h"
-#include "comparisons/judge/rigid_motion.h"
 #include "comparisons/prepare/sampling.h"
 #include "comparisons/reference/run_keeper.h"
 #include "comparisons/reference/vtu_output.h"

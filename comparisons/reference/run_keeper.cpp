@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // File format: this heading (problem/files/checked_file.h), then the stamp and the run.
-constexpr std::string_view run_heading = "springproof run 1 ", run_ending = ".run";
+constexpr std::string_view run_heading = "springproof run 2 ", run_ending = ".run";
 
 /// Of a program that was killed while it wrote, too.
 bool is_ours(const std::string& name) {

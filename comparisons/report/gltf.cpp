@@ -4,7 +4,6 @@
 #include <tiny_gltf.h>
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 #include <set>
 #include <sstream>

@@ -134,21 +134,11 @@ std::string colour_bar(double x, double y, double largest) {
 
 /// The missing shape's reason, broken into lines.
 std::string reason_svg(const std::string& reason, double x, double y) {
-  constexpr std::size_t longest = 28;
-  std::string out, line;
-  const auto flush = [&] {
+  std::string out;
+  for (const std::string& line : lines_of(reason, 29)) {
     out += svg_text(x, y, line, "text-anchor=\"middle\" fill=\"#8f1d0a\"");
     y += 17;
-    line.clear();
-  };
-  for (std::size_t at = 0; at < reason.size();) {
-    const std::size_t end = std::min(reason.find(' ', at), reason.size());
-    if (!line.empty() && line.size() + end - at > longest) flush();
-    if (!line.empty()) line += ' ';
-    line.append(reason, at, end - at);
-    at = end + 1;
   }
-  if (!line.empty()) flush();
   return out;
 }
 

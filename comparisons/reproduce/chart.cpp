@@ -224,22 +224,6 @@ std::string bars_svg(const std::vector<Chart>& charts, const Chart& chart, const
   return out;
 }
 
-/// A line of text in pieces of at most so many bytes, broken at blanks.
-std::vector<std::string> legend_lines(const std::string& label) {
-  constexpr std::size_t longest = 29;
-  std::vector<std::string> lines = {""};
-  for (std::size_t at = 0; at < label.size();) {
-    const std::size_t end = std::min(label.find(' ', at), label.size());
-    const std::string word = label.substr(at, end - at);
-    if (!lines.back().empty() && lines.back().size() + 1 + word.size() > longest)
-      lines.push_back(word);
-    else
-      lines.back() += (lines.back().empty() ? "" : " ") + word;
-    at = end + 1;
-  }
-  return lines;
-}
-
 std::string sample_svg(const std::vector<Chart>& charts, const Curve& curve, bool bars, double x, double y) {
   const std::string colour = colour_of(charts, curve), line = line_paint(curve, colour),
                     marker = marker_paint(curve, colour);
@@ -259,7 +243,7 @@ std::string legend_svg(const std::vector<Chart>& charts, double x, double& y) {
     for (const Curve& curve : chart.curves) {
       if (curve.label.empty() || !shown.insert(curve.label).second) continue;
       out += sample_svg(charts, curve, !chart.categories.empty(), x, y);
-      for (const std::string& line : legend_lines(curve.label)) {
+      for (const std::string& line : lines_of(curve.label, 29)) {
         out += svg_text(x + 36, y, line);
         y += legend_line - 3;
       }
@@ -277,6 +261,20 @@ std::vector<double> axis_ticks(double from, double to, int count) {
   std::vector<double> ticks;
   for (double k = std::ceil(from / step - 1e-9); k * step <= to + 1e-9 * step; ++k) ticks.push_back(k * step);
   return ticks;
+}
+
+std::vector<std::string> lines_of(const std::string& text, std::size_t longest) {
+  std::vector<std::string> lines = {""};
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find(' ', at), text.size());
+    const std::string word = text.substr(at, end - at);
+    if (!lines.back().empty() && lines.back().size() + 1 + word.size() > longest)
+      lines.push_back(word);
+    else
+      lines.back() += (lines.back().empty() ? "" : " ") + word;
+    at = end + 1;
+  }
+  return lines;
 }
 
 std::string svg_head(double width, double height) {

@@ -50,6 +50,8 @@ std::string charts_csv(const std::vector<Chart>& charts);
 /// "<svg ...>", with its size in pixels, its font and a white ground.
 std::string svg_head(double width, double height);
 
+/// A text in pieces of at most so many bytes, broken at blanks.
+std::vector<std::string> lines_of(const std::string& text, std::size_t longest);
 /// A line of text; `attributes` such as `text-anchor="middle"`.
 std::string svg_text(double x, double y, const std::string& text, const std::string& attributes = "");
 

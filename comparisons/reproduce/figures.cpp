@@ -9,59 +9,6 @@
 
 namespace springproof {
 
-Claim Claim::near(double number_wanted, double share) const {
-  Claim claim = *this;
-  claim.value = number_wanted;
-  claim.within = share;
-  return claim;
-}
-
-Claim Claim::near_fem(double share) const {
-  Claim claim = *this;
-  claim.target = finite_elements;
-  claim.within = share;
-  return claim;
-}
-
-Claim Claim::at_most(double bound) const {
-  Claim claim = *this;
-  claim.within = bound;
-  claim.relative = false;
-  return claim;
-}
-
-Claim Claim::alike(double share) const {
-  Claim claim = *this;
-  claim.target = similar;
-  claim.within = share;
-  return claim;
-}
-
-Claim Claim::scattering(double share) const {
-  Claim claim = *this;
-  claim.target = scatter;
-  claim.within = share;
-  return claim;
-}
-
-Claim Claim::by_the_paper() const {
-  Claim claim = *this;
-  claim.papers_bound = true;
-  return claim;
-}
-
-Claim Claim::at(const std::vector<double>& ratios) const {
-  Claim claim = *this;
-  claim.poisson_ratios = ratios;
-  return claim;
-}
-
-Claim Claim::on(const Cells& lattice) const {
-  Claim claim = *this;
-  claim.cells = lattice;
-  return claim;
-}
-
 std::string PaperFigure::title() const {
   if (id.starts_with("table")) return "Table " + id.substr(5);
   if (id.starts_with("sec")) return "Sec. " + id.substr(3);

@@ -31,14 +31,46 @@ struct Claim {
   bool papers_bound =
       false;  ///< `within` is the paper's number for this very quantity; else its words are judged by ours
 
-  Claim near(double number_wanted, double share) const;  ///< within a share of a number
-  Claim near_fem(double share) const;                    ///< within a share of the finite elements' value
-  Claim at_most(double bound) const;                     ///< a distance, in its own unit
-  Claim scattering(double share) const;                  ///< runs of a network spread by at most a share of their mean
-  Claim by_the_paper() const;                            ///< the bound is the paper's
-  Claim alike(double share) const;                       ///< largest over smallest less 1
-  Claim at(const std::vector<double>& ratios) const;     ///< only at these Poisson's ratios
-  Claim on(const Cells& lattice) const;                  ///< only on this lattice
+  /// Within a share of a number.
+  Claim near(double wanted, double share) const {
+    return with([&](Claim& c) { c.value = wanted, c.within = share; });
+  }
+  /// Within a share of the finite elements' value.
+  Claim near_fem(double share) const {
+    return with([&](Claim& c) { c.target = finite_elements, c.within = share; });
+  }
+  /// A distance, in its own unit.
+  Claim at_most(double bound) const {
+    return with([&](Claim& c) { c.within = bound, c.relative = false; });
+  }
+  /// Runs of a network spread by at most a share of their mean.
+  Claim scattering(double share) const {
+    return with([&](Claim& c) { c.target = scatter, c.within = share; });
+  }
+  /// Largest over smallest less 1.
+  Claim alike(double share) const {
+    return with([&](Claim& c) { c.target = similar, c.within = share; });
+  }
+  /// The bound is the paper's.
+  Claim by_the_paper() const {
+    return with([](Claim& c) { c.papers_bound = true; });
+  }
+  /// Only at these Poisson's ratios.
+  Claim at(const std::vector<double>& ratios) const {
+    return with([&](Claim& c) { c.poisson_ratios = ratios; });
+  }
+  /// Only on this lattice.
+  Claim on(const Cells& lattice) const {
+    return with([&](Claim& c) { c.cells = lattice; });
+  }
+
+ private:
+  template <class Change>
+  Claim with(const Change& change) const {
+    Claim claim = *this;
+    change(claim);
+    return claim;
+  }
 };
 
 /// One body of a figure of bodies.

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "problem/files/encoding.h"
 #include "problem/files/files.h"
 #include "problem/processes/child.h"

@@ -1,7 +1,6 @@
 // Loads as sentences with units.
 #include <fmt/format.h>
 
-#include <cmath>
 #include <numbers>
 
 #include "comparisons/results/records.h"

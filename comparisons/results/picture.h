@@ -1,12 +1,16 @@
 // The deformed surface of a field, for the report's 3D view.
 #pragma once
 
+#include <array>
+#include <vector>
+
 #include "comparisons/results/records.h"
 #include "meshes/field.h"
+#include "problem/vector.h"
 
 namespace springproof {
 
-/// The outer facets of the field's own cells; thinned to at most 20,000 triangles (thin_surface.h).  `truth`:
+/// The outer facets of the field's own cells; thinned to at most 20,000 triangles (thinned()).  `truth`:
 /// displacement of the reference at the same nodes, or null (then no difference is given).
 Picture picture(const RunKey& key, const Field& field, const NodalVectors* truth);
 
@@ -18,5 +22,11 @@ Picture smooth_picture(const RunKey& key, const Field& field, const Mesh& body, 
 
 /// Rest positions of the nodes of a picture of this mesh, in its order.
 NodalVectors pictured_points(const Mesh& mesh);
+
+/// The facets (triangles: fourth number -1) unchanged if they make at most `most` triangles; else at most `most`
+/// triangles between fewer of the same points [m]: of the points in a cube of a lattice the one nearest to their mean
+/// represents all.  Features thinner than a cube may be lost; for display only.
+std::vector<std::array<int, 4>> thinned(const NodalVectors& points, const std::vector<std::array<int, 4>>& facets,
+                                        std::size_t most = 20000);
 
 }  // namespace springproof

@@ -11,17 +11,17 @@
 #include "problem/files/file_name.h"
 
 namespace springproof {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(IsotropicMaterial, youngs_modulus, poisson_ratio, density)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Probe, name, at)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Section, point, normal)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Line, from, to, points, middle)
+
 namespace {
 
 using Json = nlohmann::json;
 
-Json vector(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
-
 // ---- the parts of a case
-
-Json json_of(const IsotropicMaterial& m) {
-  return {{"youngs_modulus", m.youngs_modulus}, {"poisson_ratio", m.poisson_ratio}, {"density", m.density}};
-}
 
 Json json_of(const ModelChoice& model) {
   Json options = Json::object();
@@ -30,24 +30,10 @@ Json json_of(const ModelChoice& model) {
   return {{"name", model.name}, {"label", model.label}, {"options", options}, {"in_motion", model.in_motion}};
 }
 
-Json json_of(const Probe& probe) { return {{"name", probe.name}, {"at", vector(probe.at)}}; }
-
-Json json_of(const Section& section) { return {{"point", vector(section.point)}, {"normal", vector(section.normal)}}; }
-
-Json json_of(const Line& line) {
-  return {{"from", vector(line.from)}, {"to", vector(line.to)}, {"points", line.points}, {"middle", line.middle}};
-}
-
-template <class T>
-Json list(const std::vector<T>& items) {
-  Json out = Json::array();
-  for (const T& item : items) out.push_back(json_of(item));
-  return out;
-}
-
 Json json_of(const CaseResult& result) {
   const Experiment& e = result.experiment;
-  Json loads = Json::array();
+  Json loads = Json::array(), models = loads;
+  for (const ModelChoice& model : e.models) models.push_back(json_of(model));
   for (std::size_t i = 0; i + e.weights < e.loads.size(); ++i)
     loads.push_back(describe(e.loads[i], e.model_kinematics(), e.units));
   for (const AttachedMass& mass : e.masses) loads.push_back(describe(mass, e.units));
@@ -58,23 +44,22 @@ Json json_of(const CaseResult& result) {
       {"what", e.what},
       {"units", names_of_units[static_cast<int>(e.units)]},
       {"kinematics", e.kinematics},
-      {"body",
-       {{"geo", e.body.geo}, {"size", vector(result.size)}, {"cells", result.cells}, {"voxels", e.body.is_voxels()}}},
-      {"materials", list(e.materials)},
+      {"body", {{"geo", e.body.geo}, {"size", result.size}, {"cells", result.cells}, {"voxels", e.body.is_voxels()}}},
+      {"materials", e.materials},
       {"poisson_ratios", e.settings()},
       {"listed",
        {{"part", e.listed.region > 0 ? e.regions[e.listed.region - 1].name : ""},
         {"symbol", e.listed_symbol()},
         {"words", e.listed_words()}}},
       {"loads", loads},
-      {"models", list(e.models)},
+      {"models", models},
       {"elements", e.elements},
       {"cost", e.cost},
       {"measures", e.measures},
       {"moved_patches", moved_patches(e)},
-      {"probes", list(e.probes)},
-      {"section", e.section ? json_of(*e.section) : Json(nullptr)},
-      {"line", e.line ? json_of(*e.line) : Json(nullptr)},
+      {"probes", e.probes},
+      {"section", e.section},
+      {"line", e.line},
       {"reference",
        {{"cells", e.reference.cells},
         {"elements", e.reference.elements},

@@ -1,7 +1,6 @@
 // What a comparison produces: rows, references with their uncertainty, verdicts.  The only input of the report.
 #pragma once
 
-#include <filesystem>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -197,7 +196,7 @@ struct Deformation {
   double poisson_ratio = 0;
   double principal_strain = 0;  ///< [1]
   double rotation_deg = 0;
-  double strained_share = 1;      ///< of the displacement, which errors are relative to (judge/rigid_motion.h) [1]
+  double strained_share = 1;      ///< of the displacement, which errors are relative to (judge/deformation.h) [1]
   Vec3 applied_N = Vec3::Zero();  ///< sum of the loads
   Vec3 reacted_N = Vec3::Zero();  ///< sum of the supports' forces in the reference, on its finest grid
 };
@@ -278,8 +277,8 @@ struct RegionRecord {
   std::vector<int> cells;  ///< of the springs, at each resolution; cut ones counted whole
 };
 
-struct CaseResult : Part {
-  Experiment experiment;     ///< as read
+/// What is known of a case once it is meshed.
+struct MeshedCase {
   Vec3 size = Vec3::Zero();  ///< of the body [m]; for a body of voxels that of its bounding box
   std::vector<Cells> cells;  ///< of its lattices; of a body of voxels those of its bounding box
   std::map<std::string, double>
@@ -287,13 +286,17 @@ struct CaseResult : Part {
   std::map<std::string, std::string> laws;  ///< of the models, by label, whose springs follow a law of finite strain:
                                             ///< its name among `kinematics`; none in linear cases
   std::map<std::string, std::string> made_of;  ///< of the models, by label: "springs", "a term per cell", ...
+  std::vector<RegionRecord> regions;           ///< of a body of several materials
+  std::string section_svg;                     ///< of the same, a plane section through them
+  std::vector<std::string> notes;              ///< what was repaired or left out of the body
+};
+
+struct CaseResult : Part, MeshedCase {
+  Experiment experiment;  ///< as read
   std::vector<Check> checks;
   std::vector<PublishedRow> published;
   std::vector<ValidatedValue> validation;
-  std::string validated;              ///< what `validation` says, in sentences
-  std::vector<RegionRecord> regions;  ///< of a body of several materials
-  std::string section_svg;            ///< of the same, a plane section through them
-  std::vector<std::string> notes;     ///< what was repaired or left out of the body
+  std::string validated;  ///< what `validation` says, in sentences
 };
 
 /// {812, 0, 0} stands for 812 tetrahedra, which form no grid.

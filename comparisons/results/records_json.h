@@ -39,6 +39,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ValidatedValue, model, poisson_ratio, cells, 
                                    not_judged, springs, resolution, inputs, source, licence, history, time)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RegionRecord, name, colour, youngs_modulus_Pa, poisson_ratio, density_kg_m3,
                                    volume_m3, cells)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MeshedCase, size, cells, own_poisson_ratios, laws, made_of, regions, section_svg,
+                                   notes)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Part, runs, rows, references, pictures, lines, histories, splits, deformations,
                                    cracks, limits, varied)
 

@@ -6,7 +6,6 @@
 #include "comparisons/judge/measures.h"
 #include "comparisons/reference/reference_grids.h"
 #include "comparisons/run/case_motion.h"
-#include "meshes/volume.h"
 #include "problem/case_file/measures.h"
 
 namespace springproof {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "comparisons/judge/deformation.h"
 #include "comparisons/judge/reference_value.h"
-#include "comparisons/judge/rigid_motion.h"
 #include "comparisons/judge/stress_error.h"
 #include "comparisons/models/motion_reference.h"
 #include "comparisons/prepare/prepared_case.h"

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "comparisons/judge/measures.h"
@@ -12,7 +11,6 @@
 #include "comparisons/models/fracture_run.h"
 #include "comparisons/models/motion_steps.h"
 #include "comparisons/prepare/case_checks.h"
-#include "comparisons/prepare/lattice_limits.h"
 #include "comparisons/prepare/load_resultants.h"
 #include "comparisons/prepare/sampling.h"
 #include "comparisons/prepare/voxel_body.h"
@@ -42,12 +40,16 @@ constexpr double finite_reference_elements = 1000;
 // Largest number of cells of a lattice whose matrices fit into a workstation's memory.
 constexpr double largest_lattice = 4e6;
 
+[[noreturn]] void refuse_model(const Experiment& e, std::size_t number, const std::string& why) {
+  throw InputError(e.models[number].where, "compare.models: " + why);
+}
+
 /// @throws InputError at the model's location in the case, if its options yield no network.
 EmbeddedModel build_chosen(const PreparedCase& prepared, const Lattice& lattice, std::size_t number,
                            const IsotropicMaterial& material) try {
   return build_on(prepared, lattice, prepared.models[number], material, prepared.experiment.models[number].in_motion);
 } catch (const InputError& e) {
-  throw InputError(prepared.experiment.models[number].where, fmt::format("compare.models: {}", e.what()));
+  refuse_model(prepared.experiment, number, e.what());
 }
 
 /// Decides which models take cut cells.
@@ -64,10 +66,10 @@ void choose_cut_cells(PreparedCase& prepared) {
                          : large && !averaged                 ? "the displacements are large"
                                                               : nullptr;
     if (reason && p.cut.value_or(false))
-      throw InputError(
-          e.models[m].where,
-          fmt::format("compare.models: {}: cut = true: {} (allowed: lattices of cells in a body of "
-                      "voxels, at rest under small displacements; hybmss_avg also under large ones and in motion)",
+      refuse_model(
+          e, m,
+          fmt::format("{}: cut = true: {} (allowed: lattices of cells in a body of voxels, at rest under small "
+                      "displacements; hybmss_avg also under large ones and in motion)",
                       p.row.name, reason));
     p.cut = p.cut.value_or(e.body.cut && !reason);
   }
@@ -98,9 +100,7 @@ void choose_measured_cells(PreparedCase& prepared) {
                              ? "at large strain they follow Hencky's law"
                              : nullptr;
     if (reason && p.coarsened.value_or(false))
-      throw InputError(
-          e.models[m].where,
-          fmt::format("compare.models: {}: coarsened = true: {} (allowed: cut cells of one size)", p.row.name, reason));
+      refuse_model(e, m, fmt::format("{}: coarsened = true: {} (allowed: cut cells of one size)", p.row.name, reason));
     p.coarsened = p.coarsened.value_or(e.body.coarsened && !reason);
     if (reason) reasons += fmt::format("{}{}: {}", reasons.empty() ? "" : "; ", p.row.name, reason);
   }
@@ -120,10 +120,10 @@ void check_vertex_options(const PreparedCase& prepared) {
     if (!passes_patch_test(prepared.models[m].row)) continue;
     for (const char* option : {"min_length", "max_length", "nodes_per_m3", "seed", "seeds"})
       if (choice.options.contains(option))
-        throw InputError(choice.where,
-                         fmt::format("compare.models: {}: {}: the nodes of this network are the vertices of a mesh in "
-                                     "any body but a block (allowed: springs_per_node; the cells' edge sets the mesh)",
-                                     choice.name, option));
+        refuse_model(prepared.experiment, m,
+                     fmt::format("{}: {}: the nodes of this network are the vertices of a mesh in any body but a block "
+                                 "(allowed: springs_per_node; the cells' edge sets the mesh)",
+                                 choice.name, option));
   }
 }
 
@@ -267,33 +267,26 @@ void check_region_models(const PreparedCase& prepared) {
     const ModelParameters& p = prepared.models[m];
     const bool of_file = p.springs && !p.springs->regions.empty();  // whose regions are the case's: check_own_models
     const bool can = of_file || (has_cut_cells(p.row) && !p.springs && e.body.accuracies.empty());
+    const auto refuse = [&](const char* why) { refuse_model(e, m, e.models[m].label + why); };
     if (measures_regions && can && !of_file && !*p.cut && !p.has(Extension::averaging))
-      throw InputError(e.models[m].where,
-                       fmt::format("compare.models: {}: the measures region and interface are of averaged springs "
-                                   "(allowed: hybmss_avg, cut cells, or other measures)",
-                                   e.models[m].label));
+      refuse(
+          ": the measures region and interface are of averaged springs (allowed: hybmss_avg, cut cells, or other "
+          "measures)");
     if (*p.coarsened && measures_regions)
-      throw InputError(e.models[m].where,
-                       fmt::format("compare.models: {}: coarsened = true: a measured cell is of no region (allowed: "
-                                   "without the measures region and interface)",
-                                   e.models[m].label));
+      refuse(
+          ": coarsened = true: a measured cell is of no region (allowed: without the measures region and interface)");
     if (*p.coarsened && e.listed.region > 0)
-      throw InputError(e.models[m].where,
-                       fmt::format("compare.models: {}: coarsened = true: cells are measured for one material of each "
-                                   "region (allowed: a list in [material])",
-                                   e.models[m].label));
+      refuse(": coarsened = true: cells are measured for one material of each region (allowed: a list in [material])");
     if (*p.coarsened && e.model_kinematics() == Kinematics::finite)  // at rest or in motion
-      throw InputError(
-          e.models[m].where,
-          fmt::format("compare.models: {}: coarsened = true: measured cells of several materials are for small strain "
-                      "at rest (allowed: kinematics = \"linear\")",
-                      e.models[m].label));
+      refuse(
+          ": coarsened = true: measured cells of several materials are for small strain at rest (allowed: kinematics = "
+          "\"linear\")");
     if (is_external(e.models[m]) || can) continue;
-    throw InputError(
-        e.models[m].where,
+    refuse_model(
+        e, m,
         fmt::format(
-            "compare.models: {} is of one material in a body{} (allowed beside [[region]]: lattices of cells of "
-            "one size without momentum dispersion, as hybmss_avg; a springs file of such; or models = [])",
+            "{} is of one material in a body{} (allowed beside [[region]]: lattices of cells of one size without "
+            "momentum dispersion, as hybmss_avg; a springs file of such; or models = [])",
             e.models[m].label,
             has_cut_cells(p.row) ? "" : ": at an interface its springs cross, or its nodes have one dilatation"));
   }

@@ -8,7 +8,6 @@
 #include "comparisons/run/case_run.h"
 #include "comparisons/run/expected_runs.h"
 #include "comparisons/run/prepare.h"
-#include "comparisons/run/variations.h"
 #include "problem/processes/child.h"
 #include "problem/system/input_error.h"
 

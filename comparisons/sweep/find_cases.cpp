@@ -7,7 +7,6 @@
 
 #include "meshes/mesher/mesher.h"
 #include "meshes/mesher/mesher_exchange.h"
-#include "problem/files/files.h"
 #include "problem/processes/child.h"
 #include "problem/system/input_error.h"
 #include "problem/system/shortened.h"
@@ -85,6 +84,32 @@ std::vector<fs::path> find_cases(const std::vector<std::string>& names) {
     }
   }
   return cases;
+}
+
+Experiment only(const std::vector<double>& wanted, Experiment e) {
+  if (wanted.empty()) return e;
+  const auto left_out = [&](double nu) {
+    return std::none_of(wanted.begin(), wanted.end(), [&](double w) { return same_poisson_ratio(w, nu); });
+  };
+  const std::vector<double> has = e.settings();
+  e.leave_out_settings(left_out);
+  std::erase_if(e.expectations, [&](const Expectation& x) { return x.poisson_ratio && left_out(*x.poisson_ratio); });
+  std::erase_if(e.published, [&](const PublishedValue& v) { return left_out(v.poisson_ratio); });
+  if (e.settings().empty())
+    throw InputError(fmt::format("{}: {}: none of those wanted (allowed: {})", e.file.string(), e.listed_words(),
+                                 fmt::join(has, ", ")));
+  return e;
+}
+
+Experiment finer(int times, Experiment e) {
+  if (times == 1) return e;
+  if (e.reference.cells[0] == 0 && e.reference.edge == 0)
+    throw InputError(fmt::format(
+        "--finer: {} leaves its reference grids to the program; give it [reference] cells or edge_m", e.file.string()));
+  for (int& n : e.reference.cells)
+    if (n > 1) n *= times;
+  e.reference.edge /= times;
+  return e;
 }
 
 }  // namespace springproof

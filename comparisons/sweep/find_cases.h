@@ -1,9 +1,11 @@
-// Finds case files by path or built-in name.
+// Finds case files by path or built-in name, and restricts what of them is compared.
 #pragma once
 
 #include <filesystem>
 #include <string>
 #include <vector>
+
+#include "problem/case_file/experiment.h"
 
 namespace springproof {
 
@@ -17,5 +19,14 @@ std::string case_name(const std::filesystem::path& file);
 
 /// All built-in case files.
 std::vector<std::filesystem::path> built_in_cases();
+
+/// Restricts a case to the requested settings, and to the expectations at these or at every one; none
+/// requested: all of it.
+/// @throws InputError if it has none of them.
+Experiment only(const std::vector<double>& wanted, Experiment experiment);
+
+/// Multiplies the cells of the reference's grids along each direction, except in directions of one cell.
+/// @throws InputError if the case leaves the choice of its reference grids to the program.
+Experiment finer(int times, Experiment experiment);
 
 }  // namespace springproof

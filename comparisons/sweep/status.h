@@ -2,7 +2,6 @@
 // phase.
 #pragma once
 
-#include <chrono>
 #include <condition_variable>
 #include <functional>
 #include <list>

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cerrno>
 #include <chrono>
 #include <mutex>
 #include <thread>
@@ -16,7 +15,6 @@
 #include "comparisons/run/case_run.h"
 #include "comparisons/run/expected_runs.h"
 #include "comparisons/run/prepare.h"
-#include "comparisons/sweep/chosen_cases.h"
 #include "comparisons/sweep/find_cases.h"
 #include "comparisons/sweep/folder_lock.h"
 #include "comparisons/sweep/part_file.h"

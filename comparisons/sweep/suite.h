@@ -5,7 +5,6 @@
 #include <optional>
 #include <vector>
 
-#include "comparisons/sweep/shard.h"
 #include "comparisons/sweep/sweep.h"
 
 namespace springproof {

@@ -2,12 +2,18 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <charconv>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <string_view>
 
+#include "comparisons/results/records_json.h"
 #include "problem/files/checked_file.h"
+#include "problem/system/input_error.h"
 #include "problem/system/json.h"
+#include "problem/system/shortened.h"
 
 namespace springproof {
 
@@ -19,7 +25,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Sweep, version, libraries, shards, finer, vtu
 
 namespace {
 
-constexpr std::string_view plan_heading = "springproof sweep 1 ", meshed_heading = "springproof case 2 ";
+constexpr std::string_view plan_heading = "springproof sweep 1 ", meshed_heading = "springproof case 3 ";
 
 fs::path meshed_file(const fs::path& folder, const std::string& key) { return folder / "parts" / (key + ".case.cbor"); }
 
@@ -80,6 +86,13 @@ void require_same(const fs::path& folder, const Sweep& there, const Sweep& own) 
   }
 }
 
+/// 0: no number.
+int whole_number(std::string_view text) {
+  int number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc() && end == text.data() + text.size() ? number : 0;
+}
+
 }  // namespace
 
 fs::path sweep_file(const fs::path& folder) { return folder / "sweep.cbor"; }
@@ -111,28 +124,12 @@ const PlannedCase& case_of_key(const Sweep& sweep, const std::string& key) {
   throw InputError(fmt::format("no case {} in the plan", key));
 }
 
-void save_meshed(const fs::path& folder, const std::string& key, const CaseResult& meshed) {
-  write_checked(meshed_file(folder, key), meshed_heading,
-                cbor({{"size", meshed.size},
-                      {"cells", meshed.cells},
-                      {"notes", meshed.notes},
-                      {"own_poisson_ratios", meshed.own_poisson_ratios},
-                      {"laws", meshed.laws},
-                      {"made_of", meshed.made_of},
-                      {"regions", meshed.regions},
-                      {"section", meshed.section_svg}}));
+void save_meshed(const fs::path& folder, const std::string& key, const MeshedCase& meshed) {
+  write_checked(meshed_file(folder, key), meshed_heading, cbor(meshed));
 }
 
-bool load_meshed(const fs::path& folder, const std::string& key, CaseResult& result) try {
-  const nlohmann::json meshed = nlohmann::json::from_cbor(read_checked(meshed_file(folder, key), meshed_heading));
-  meshed.at("size").get_to(result.size);
-  meshed.at("cells").get_to(result.cells);
-  meshed.at("notes").get_to(result.notes);
-  meshed.at("own_poisson_ratios").get_to(result.own_poisson_ratios);
-  meshed.at("laws").get_to(result.laws);
-  meshed.at("made_of").get_to(result.made_of);
-  meshed.at("regions").get_to(result.regions);
-  meshed.at("section").get_to(result.section_svg);
+bool load_meshed(const fs::path& folder, const std::string& key, MeshedCase& meshed) try {
+  nlohmann::json::from_cbor(read_checked(meshed_file(folder, key), meshed_heading)).get_to(meshed);
   return true;
 } catch (const std::exception&) {  // not there, or damaged
   return false;
@@ -140,6 +137,36 @@ bool load_meshed(const fs::path& folder, const std::string& key, CaseResult& res
 
 std::string title_of(const PlannedCase& planned, const PlannedPart& part) {
   return fmt::format("{}  nu{}", planned.name, part.poisson_ratio);
+}
+
+Shard parse_shard(const std::string& text) {
+  const std::size_t slash = text.find('/');
+  Shard shard{0, 0};
+  if (slash != std::string::npos)
+    shard = {whole_number(std::string_view(text).substr(0, slash)),
+             whole_number(std::string_view(text).substr(slash + 1))};
+  if (shard.number < 1 || shard.number > shard.count || shard.count > most_shards)
+    throw InputError(shortened(fmt::format(
+        "--shard: is {} (allowed: K/N, the K-th of N shares, K from 1 to N, N up to {})", text, most_shards)));
+  return shard;
+}
+
+std::vector<std::size_t> longest_first(const std::vector<double>& seconds) {
+  std::vector<std::size_t> order(seconds.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return seconds[a] > seconds[b]; });
+  return order;
+}
+
+std::vector<int> shards_of(const std::vector<double>& expected_seconds, int count) {
+  std::vector<double> load(static_cast<std::size_t>(count), 0.0);
+  std::vector<int> shards(expected_seconds.size());
+  for (const std::size_t part : longest_first(expected_seconds)) {
+    const auto least = std::min_element(load.begin(), load.end());
+    *least += expected_seconds[part];
+    shards[part] = static_cast<int>(least - load.begin()) + 1;
+  }
+  return shards;
 }
 
 }  // namespace springproof

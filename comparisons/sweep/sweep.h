@@ -1,4 +1,4 @@
-// The plan of a comparison whose parts several machines compute into one folder.
+// The plan of a comparison whose parts several machines compute into one folder, each a share of them.
 #pragma once
 
 #include <filesystem>
@@ -46,12 +46,30 @@ Sweep read_plan(const std::filesystem::path& folder);
 const PlannedCase& case_of_key(const Sweep& sweep, const std::string& key);
 
 /// Keeps in the folder what was known of a case when it was meshed: with the plan and the parts enough for a report.
-void save_meshed(const std::filesystem::path& folder, const std::string& key, const CaseResult& meshed);
+void save_meshed(const std::filesystem::path& folder, const std::string& key, const MeshedCase& meshed);
 
 /// @return whether it is there, and whole.
-bool load_meshed(const std::filesystem::path& folder, const std::string& key, CaseResult& result);
+bool load_meshed(const std::filesystem::path& folder, const std::string& key, MeshedCase& meshed);
 
 /// "golec_2019/bending  nu0.3"
 std::string title_of(const PlannedCase& planned, const PlannedPart& part);
+
+/// One of `count` shares, numbered from 1.
+struct Shard {
+  int number = 1, count = 1;
+};
+
+inline constexpr int most_shards = 10000;
+
+/// Reads "3/16".
+/// @throws InputError
+Shard parse_shard(const std::string& text);
+
+/// The number of the shard of each part: the longest parts first, each to the shard with the least to do.  Parts that
+/// take equally long go round.
+std::vector<int> shards_of(const std::vector<double>& expected_seconds, int count);
+
+/// The parts in the order in which they are to be started: none of the long ones is left for the end.
+std::vector<std::size_t> longest_first(const std::vector<double>& expected_seconds);
 
 }  // namespace springproof

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "comparisons/sweep/chosen_cases.h"
+#include "comparisons/sweep/find_cases.h"
 #include "comparisons/sweep/folder_lock.h"
 #include "comparisons/sweep/part_file.h"
 #include "comparisons/sweep/suite_results.h"

@@ -40,40 +40,24 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Solution, grid, ok, message, form, law, displ
                                    seconds, times, memory_MiB, frequencies, shapes, rigid_motions, time, path,
                                    kinetic_energy, elastic_energy, angular_momentum)
 
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Request, name, size, law, material, loads, grids, points, stress_points, tolerance,
+                                   cost, vtu_single, modes, motion, masses)
+
 nlohmann::json to_json(const Request& r) {
-  nlohmann::json meshes = nlohmann::json::array();
-  for (const auto& mesh : r.meshes) meshes.push_back(to_json(*mesh));
-  return {{"name", r.name},           {"geo", r.geo.string()},
-          {"size", r.size},           {"law", r.law},
-          {"material", r.material},   {"regions", materials_of(r.regions)},
-          {"loads", r.loads},         {"grids", r.grids},
-          {"points", r.points},       {"stress_points", r.stress_points},
-          {"tolerance", r.tolerance}, {"meshes", meshes},
-          {"cost", r.cost},           {"vtu_single", r.vtu_single},
-          {"modes", r.modes},         {"motion", r.motion},
-          {"masses", r.masses}};
+  nlohmann::json out = r;
+  out["geo"] = r.geo.string();
+  out["regions"] = materials_of(r.regions);
+  out["meshes"] = nlohmann::json::array();
+  for (const auto& mesh : r.meshes) out["meshes"].push_back(to_json(*mesh));
+  return out;
 }
 
 Request request_from_json(const nlohmann::json& j) {
-  Request r;
-  j.at("name").get_to(r.name);
+  auto r = j.get<Request>();
   r.geo = j.at("geo").get<std::string>();
-  j.at("size").get_to(r.size);
-  j.at("law").get_to(r.law);
-  j.at("material").get_to(r.material);
   for (const IsotropicMaterial& m : j.at("regions").get<std::vector<IsotropicMaterial>>())
     r.regions.push_back({{}, m, {}});
-  j.at("loads").get_to(r.loads);
-  j.at("grids").get_to(r.grids);
-  j.at("points").get_to(r.points);
-  j.at("stress_points").get_to(r.stress_points);
-  j.at("tolerance").get_to(r.tolerance);
   for (const auto& mesh : j.at("meshes")) r.meshes.push_back(std::make_shared<Mesh>(mesh_from_json(mesh)));
-  j.at("cost").get_to(r.cost);
-  j.at("vtu_single").get_to(r.vtu_single);
-  j.at("modes").get_to(r.modes);
-  j.at("motion").get_to(r.motion);
-  j.at("masses").get_to(r.masses);
   return r;
 }
 

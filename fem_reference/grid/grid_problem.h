@@ -40,7 +40,7 @@ struct GridProblem {
   std::optional<MotionRequest>
       motion;  ///< integrated in `steps` steps instead of an equilibrium (fem_reference/motion.h)
   int steps = 0;
-  std::string vtu;          ///< file for ParaView of a converged solution (solution_file.h); empty: none
+  std::string vtu;          ///< file for ParaView of a converged solution; empty: none
   VtuNotes vtu_notes;       ///< what it says of itself
   bool own_memory = false;  ///< Solution::memory_MiB is the growth due to this grid
 };

@@ -1,7 +1,5 @@
 #include "fem_reference/solvers/coarsest_level.h"
 
-#include <algorithm>
-
 #include "fem_reference/grid/processes.h"
 #include "fem_reference/solvers/assembled_operator.h"
 

@@ -1,7 +1,6 @@
 // Krylov methods.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>

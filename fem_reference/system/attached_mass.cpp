@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include "fem_reference/grid/locate.h"
-#include "fem_reference/system/sample.h"
 #include "problem/system/input_error.h"
 
 namespace springproof::fem {

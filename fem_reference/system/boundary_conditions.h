@@ -3,7 +3,6 @@
 
 #include <deal.II/dofs/dof_handler.h>
 
-#include <functional>
 #include <set>
 #include <vector>
 

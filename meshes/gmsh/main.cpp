@@ -10,7 +10,7 @@
 #include "meshes/gmsh/bodies.h"
 #include "meshes/gmsh/session.h"
 #include "meshes/mesher/mesher_exchange.h"
-#include "problem/processes/child.h"
+#include "problem/files/files.h"
 #include "problem/system/streams.h"
 
 namespace springproof {

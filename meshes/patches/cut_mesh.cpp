@@ -1,7 +1,6 @@
 #include "meshes/patches/cut_mesh.h"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
 #include <limits>
 

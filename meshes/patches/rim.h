@@ -1,6 +1,7 @@
 // The rim of a patch: where it ends on the surface of the body.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "meshes/mesh.h"
@@ -22,5 +23,11 @@ bool ends_at_edges(const std::vector<RimEdge>& rim);
 
 /// Whether the patch ends at no edge of the body for more than half of its rim.
 bool is_smooth(const std::vector<RimEdge>& rim);
+
+/// Cuts the tetrahedra at the rims of these patches until no edge of a facet there is longer than `longest` [m]; away
+/// from a rim they grow with the distance.  Where a held patch ends on a smooth surface, stresses grow as 1/sqrt(r) and
+/// displacements err in proportion to the edges at the rim; a patch that ends at edges of the body for most of its rim
+/// is left as it is.  The body stays the same.
+void refine_rims(const std::vector<std::string>& patches, double longest, Mesh& mesh);
 
 }  // namespace springproof

@@ -1,7 +1,6 @@
 #include "msm/algebra/lobpcg.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "msm/algebra/dense.h"
 

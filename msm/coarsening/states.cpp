@@ -3,7 +3,6 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <stdexcept>
-#include <vector>
 
 #include "msm/algebra/direct_solver.h"
 #include "msm/algebra/noise.h"

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "msm/laws/capabilities.h"
-
 namespace springproof {
 namespace {
 

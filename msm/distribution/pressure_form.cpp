@@ -1,7 +1,5 @@
 #include "msm/distribution/pressure_form.h"
 
-#include <cmath>
-
 namespace springproof {
 namespace {
 

@@ -17,7 +17,4 @@ struct PressureForm {
 /// (msm/parameters/calibrate.h).
 PressureForm pressure_form(const MassSpringModel& model);
 
-/// Whether its pressures are those of nodes, not of cells.
-bool has_nodal_pressures(const MassSpringModel& model);
-
 }  // namespace springproof

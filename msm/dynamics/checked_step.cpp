@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "msm/dynamics/terms/energy_momentum.h"
 #include "msm/dynamics/terms/mass_average.h"
 #include "msm/dynamics/terms/plane_contact.h"
 #include "msm/dynamics/time_step.h"

@@ -60,15 +60,12 @@ Eigen::Matrix3d rotation_between(const NodalVectors& X, const NodalVectors& x, c
 }  // namespace
 
 ImplicitMotion::ImplicitMotion(const MassSpringModel& model, double density, const MotionOptions& options)
-    : model_(model),
+    : MotionOfNodes(model, options),
       options_(options),
       density_(density),
       safe_step_(safe_time_step(model, density)),
       mass_(masses(model.network, density)),
-      spacing_(std::cbrt(model.network.volume.mean())),
-      overstrains_(model.network, options.relaxation),
-      x_(model.network.X),
-      v_(NodalVectors::Zero(x_.rows(), 3)) {
+      spacing_(std::cbrt(model.network.volume.mean())) {
   if (options.integrator == Integrator::energy_momentum) secant_ = std::make_unique<EnergyMomentum>(model);
   if (options.contact) plane_.emplace(options.contact->plane(), x_.rows(), spacing_);
 }
@@ -77,18 +74,6 @@ void ImplicitMotion::set_conditions(const BoundaryConditions& conditions) {
   if (conditions.fixed != conditions_.fixed) prepared_for_ = 0;
   if (conditions_.fixed.empty()) external_before_ = conditions.external;
   conditions_ = conditions;
-}
-
-void ImplicitMotion::move_supports() {
-  for (Eigen::Index i = 0; i < x_.size(); ++i)
-    if (conditions_.fixed[i]) x_.data()[i] = model_.network.X.data()[i] + conditions_.prescribed.data()[i];
-}
-
-void ImplicitMotion::set_state(const NodalVectors& x, const NodalVectors& v) {
-  x_ = x;
-  v_ = v;
-  carry(model_.network.cells.carried, x_);
-  carry(model_.network.cells.carried, v_);
 }
 
 NodalVectors ImplicitMotion::relaxing_forces() const {

@@ -1,7 +1,6 @@
 // Implicit dynamics: steps that may be larger than the explicit bound.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <optional>
 
@@ -9,7 +8,6 @@
 #include "msm/algebra/krylov.h"
 #include "msm/dynamics/motion.h"
 #include "msm/dynamics/terms/energy_momentum.h"
-#include "msm/dynamics/terms/plane_constraint.h"
 #include "msm/dynamics/terms/plane_contact.h"
 #include "msm/multigrid/multigrid.h"
 
@@ -23,7 +21,9 @@ namespace springproof {
 /// Nodes that end a step on a plane (PlaneConstraint) have lost their velocity along its normal then, as in explicit
 /// steps.  The reactions at the end of the step do no work on nodes that stay, and take some from those that land, so
 /// that the energy does not grow; momentum changes by what the plane gives.
-class ImplicitMotion : public Motion {
+///
+/// Its branches are those at its positions; velocities of fixed unknowns are the mean over the last step.
+class ImplicitMotion : public MotionOfNodes {
  public:
   /// @param model a model
   /// @param density [kg/m^3]
@@ -36,9 +36,6 @@ class ImplicitMotion : public Motion {
   /// Those of the end of the next step; a step's loads are the mean of those of its two ends (energy-momentum) or those
   /// of its end.
   void set_conditions(const BoundaryConditions& conditions) override;
-  void move_supports() override;
-  void set_state(const NodalVectors& x, const NodalVectors& v) override;
-  void relax() override { overstrains_.relax(x_); }
   NodalVectors relaxing_forces() const override;
   std::optional<BranchEnergies> branch_energies() const override;
 
@@ -46,8 +43,6 @@ class ImplicitMotion : public Motion {
   ///   in failure().
   ForceNorms advance(long steps) override;
 
-  NodalVectors positions() const override { return x_; }
-  NodalVectors velocities() const override { return v_; }  ///< of fixed unknowns the mean over the last step
   std::string description() const override;
   std::string failure() const override { return failure_; }
 
@@ -82,16 +77,12 @@ class ImplicitMotion : public Motion {
   bool factored() const { return !cycle_; }
   bool held() const;
 
-  const MassSpringModel& model_;
   MotionOptions options_;
   double density_, safe_step_;
   Eigen::VectorXd mass_;
   double spacing_;  ///< of the nodes [m]
   std::unique_ptr<EnergyMomentum> secant_;
-  Overstrains overstrains_;  ///< at x_
-  BoundaryConditions conditions_;
   NodalVectors external_before_;
-  NodalVectors x_, v_;
   double dt_ = 0;  ///< of the present step [s]
   long advanced_ = 0, factorisations_ = 0;
   long halved_ = 0;       ///< steps that had no solution and were made in halves

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "msm/dynamics/lattice_motion.h"
 #include "msm/gpu/gpu.h"

@@ -97,4 +97,22 @@ class Motion {
   virtual std::string failure() const { return ""; }
 };
 
+/// A motion whose state is that of the nodes in their order.
+class MotionOfNodes : public Motion {
+ public:
+  void move_supports() override;
+  void set_state(const NodalVectors& x, const NodalVectors& v) override;
+  void relax() override { overstrains_.relax(x_); }
+  NodalVectors positions() const override { return x_; }
+  NodalVectors velocities() const override { return v_; }
+
+ protected:
+  MotionOfNodes(const MassSpringModel& model, const MotionOptions& options);
+
+  const MassSpringModel& model_;
+  BoundaryConditions conditions_;
+  Overstrains overstrains_;
+  NodalVectors x_, v_;
+};
+
 }  // namespace springproof

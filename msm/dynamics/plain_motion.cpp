@@ -7,30 +7,15 @@
 namespace springproof {
 
 PlainMotion::PlainMotion(const MassSpringModel& model, double density, const MotionOptions& options)
-    : model_(model),
+    : MotionOfNodes(model, options),
       dispersion_(options.lagged ? dispersion_of(model) : nullptr),
       inverse_inertia_(inverse_inertia(model.network, density, options)),
       dt_(options.time_step.value()),
       damping_(options.damping),
       viscosity_(options.viscosity),
-      overstrains_(model.network, options.relaxation),
       energies_wanted_(options.branch_energies),
       average_(mass_average(model.network, density, options)),
-      x_(model.network.X),
-      v_(NodalVectors::Zero(x_.rows(), 3)),
       of_supports_(v_) {}
-
-void PlainMotion::move_supports() {
-  for (Eigen::Index i = 0; i < x_.size(); ++i)
-    if (conditions_.fixed[i]) x_.data()[i] = model_.network.X.data()[i] + conditions_.prescribed.data()[i];
-}
-
-void PlainMotion::set_state(const NodalVectors& x, const NodalVectors& v) {
-  x_ = x;
-  v_ = v;
-  carry(model_.network.cells.carried, x_);
-  carry(model_.network.cells.carried, v_);
-}
 
 NodalVectors PlainMotion::relaxing_forces() const {
   if (!overstrains_.acts()) return {};

@@ -7,7 +7,8 @@
 namespace springproof {
 
 /// The steps of run_dynamics() as they are written: for models that have no kernel, and what kernels are held against.
-class PlainMotion : public Motion {
+/// Its branches are those at the beginning of the last step.
+class PlainMotion : public MotionOfNodes {
  public:
   /// @param model a model
   /// @param density [kg/m^3]
@@ -15,14 +16,9 @@ class PlainMotion : public Motion {
   PlainMotion(const MassSpringModel& model, double density, const MotionOptions& options);
 
   void set_conditions(const BoundaryConditions& conditions) override { conditions_ = conditions; }
-  void move_supports() override;
-  void set_state(const NodalVectors& x, const NodalVectors& v) override;
-  void relax() override { overstrains_.relax(x_); }
   NodalVectors relaxing_forces() const override;
   std::optional<BranchEnergies> branch_energies() const override;
   ForceNorms advance(long steps) override;
-  NodalVectors positions() const override { return x_; }
-  NodalVectors velocities() const override { return v_; }
   std::string description() const override { return "plain loops"; }
 
  private:
@@ -30,18 +26,14 @@ class PlainMotion : public Motion {
   NodalVectors moving() const;
   NodalVectors forces_at_x();
 
-  const MassSpringModel& model_;
   const MomentumDispersion* dispersion_;  ///< nullptr: dispersion is not lagged
   NodalVectors inverse_inertia_;          ///< [1/kg]
   Eigen::VectorXd J_;
   double dt_, damping_;
   Viscosity viscosity_;
-  Overstrains overstrains_;  ///< at the beginning of the last step
   bool energies_wanted_;
   MassAverage average_;
-  NodalVectors x_, v_;
   NodalVectors of_supports_;  ///< velocities of moved unknowns [m/s], zero on free ones
-  BoundaryConditions conditions_;
 };
 
 }  // namespace springproof

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <map>
 #include <optional>
-#include <set>
 
 #include "meshes/locate/locate.h"
 #include "msm/embedding/rigid_motions.h"

@@ -1,6 +1,5 @@
 #include "msm/kernels/instruction_set.h"
 
-#include <algorithm>
 #include <cstdlib>
 #include <stdexcept>
 

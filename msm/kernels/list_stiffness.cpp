@@ -1,6 +1,5 @@
 #include "msm/kernels/list_stiffness.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>

@@ -1,7 +1,6 @@
 #include "msm/kernels/spring_blocks.h"
 
 #include <algorithm>
-#include <array>
 #include <numeric>
 
 namespace springproof {

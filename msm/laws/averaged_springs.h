@@ -116,4 +116,18 @@ CellForm cell_form(const AveragedSprings& law, const CellShape& cell);
 /// The four patterns of corner positions that F does not see: q = (positions of the corners, 3 x 8) times this.
 const Eigen::Matrix<double, 8, 4>& corner_patterns();
 
+/// What the energy of each cell depends on beside the positions of its corners: one of full cells of a size and
+/// material, one of each cut cell.
+class CellForms {
+ public:
+  CellForms() = default;
+  CellForms(const AveragedSprings& law, const CellSet& cells);
+
+  const CellForm& operator[](std::size_t cell) const { return forms_[of_cell_[cell]]; }
+
+ private:
+  std::vector<CellForm> forms_;
+  std::vector<int> of_cell_;
+};
+
 }  // namespace springproof

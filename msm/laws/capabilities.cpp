@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "msm/laws/turned_bond.h"
+#include "msm/laws/anchors.h"
 
 namespace springproof {
 namespace {

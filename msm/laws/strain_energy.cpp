@@ -1,7 +1,6 @@
 #include "msm/laws/strain_energy.h"
 
 #include <Eigen/LU>
-#include <array>
 #include <cmath>
 
 namespace springproof {

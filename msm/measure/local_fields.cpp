@@ -14,10 +14,6 @@
 namespace springproof {
 namespace {
 
-void add(const std::vector<double>& more, std::vector<double>& sum) {
-  for (std::size_t s = 0; s < sum.size(); ++s) sum[s] += more[s];
-}
-
 bool planar(const Network& network) {
   const auto z = network.X.col(2);
   return z.maxCoeff() - z.minCoeff() <= 1e-9 * network.X.col(0).cwiseAbs().maxCoeff();
@@ -50,20 +46,8 @@ std::vector<double> linear_tensions(const MassSpringModel& model, const NodalVec
       J[dispersion->sink(network, s.i)] += c.in[n][0] * elongation;
       J[dispersion->sink(network, s.j)] += c.in[n][1] * elongation;
     }
-    add(dispersion->tensions(network, J), T);
-  }
-  return T;
-}
-
-std::vector<double> finite_tensions(const MassSpringModel& model, const NodalVectors& x) {
-  const Network& network = model.network;
-  std::vector<double> T;
-  T.reserve(network.springs.size());
-  for (const Spring& s : network.springs) T.push_back(s.stiffness * (between(s, x).norm() - s.rest_length));
-  if (const MomentumDispersion* dispersion = dispersion_of(model)) {
-    if (dispersion->form == Dispersion::finite_strain)
-      throw std::invalid_argument("the forces of momentum dispersion of finite strain are no tensions of springs");
-    add(dispersion->tensions(network, dispersion->inflow(network, x)), T);
+    const std::vector<double> dispersed = dispersion->tensions(network, J);
+    for (std::size_t s = 0; s < T.size(); ++s) T[s] += dispersed[s];
   }
   return T;
 }

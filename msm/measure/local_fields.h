@@ -9,9 +9,8 @@ namespace springproof {
 
 /// Tension of each spring [N], positive if it pulls: its own plus that added by momentum dispersion.  Forces of cells
 /// and angles are not tensions, so the measured stress of models with those is incomplete.
-/// @throws std::invalid_argument of finite_tensions() for dispersion of finite strain.
-std::vector<double> linear_tensions(const MassSpringModel& model, const NodalVectors& u);  ///< displacement from rest
-std::vector<double> finite_tensions(const MassSpringModel& model, const NodalVectors& x);  ///< positions
+/// @param u displacements from rest [m]
+std::vector<double> linear_tensions(const MassSpringModel& model, const NodalVectors& u);
 
 /// Displacement gradient du_i/dX_j at a point: linear fit to the nodes closer than `radius` [m], weights (1 -
 /// r^2/R^2)^2 (moving least squares; an affine field is exact).  In a planar network (all z equal) d/dz is 0.

@@ -1,6 +1,5 @@
 #include "msm/measure/moduli.h"
 
-#include <cmath>
 #include <stdexcept>
 
 #include "msm/models.h"

@@ -1,6 +1,5 @@
 #include "msm/multigrid/cell_stiffness.h"
 
-#include <algorithm>
 #include <stdexcept>
 
 namespace springproof {

@@ -3,7 +3,6 @@
 
 #include <Eigen/Core>
 #include <cstring>
-#include <vector>
 
 #include "msm/algebra/block_matrix.h"
 #include "msm/multigrid/cell_stiffness.h"

@@ -1,7 +1,6 @@
 #include "msm/parameters/model_table.h"
 
 #include <limits>
-#include <stdexcept>
 #include <variant>
 
 #include "msm/exchange/springs_file.h"

@@ -3,15 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
-#include <string_view>
 
 #include "problem/body_size.h"
 #include "problem/case_file/experiment_parts.h"
 #include "problem/files/named_files.h"
 #include "problem/large_strain.h"
 #include "problem/system/nearest_name.h"
-#include "problem/system/shortened.h"
 
 namespace springproof {
 namespace {

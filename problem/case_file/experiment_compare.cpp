@@ -1,13 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "problem/case_file/experiment_parts.h"
 #include "problem/case_file/measures.h"
 #include "problem/exact_field.h"
 #include "problem/files/file_name.h"
-#include "problem/system/nearest_name.h"
 
 namespace springproof {
 namespace {

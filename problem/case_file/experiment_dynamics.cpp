@@ -1,6 +1,7 @@
-// The [dynamics] table.
+// The [dynamics], [fracture] and [relaxation] tables: what the body does in time.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -80,6 +81,43 @@ void read_damping(const TomlTable& table, MotionChoice& motion) {
   }
 }
 
+constexpr const char* branch_words = "a list of up to 8 { share, time_s }";
+constexpr std::size_t most_branches = 8;
+
+std::vector<RelaxationBranch> read_branches(const TomlValue& value) {
+  const std::vector<TomlValue> items = as_list(value, branch_words);
+  if (items.size() > most_branches) refuse(value, fmt::format("has {} branches", items.size()), branch_words);
+  std::vector<RelaxationBranch> branches;
+  for (const TomlValue& item : items) {
+    const TomlTable table(item, keys_of("material.relaxation.branches"));
+    const RelaxationBranch branch{as_number(table.at("share"), {"a number from 1e-6 to 1000", 1e-6, 1000, true, true}),
+                                  as_number(table.at("time_s"), positive_number)};
+    if (std::any_of(branches.begin(), branches.end(), [&](const auto& other) { return other.time == branch.time; }))
+      refuse(table.at("time_s"), fmt::format("{} s is that of another branch", branch.time),
+             "one branch of each time, with the sum of their shares");
+    branches.push_back(branch);
+  }
+  return branches;
+}
+
+int as_count(const TomlValue& value, double most) {
+  const std::string words = fmt::format("a whole number from 1 to {:g}", most);
+  const double x = as_number(value, {words.c_str(), 1, most, true, true});
+  if (x != static_cast<double>(static_cast<int>(x))) refuse(value, fmt::format("is {}", x), words);
+  return static_cast<int>(x);
+}
+
+/// A drying body is held at rest and carries no load.
+void check_supports(const Experiment& e) {
+  for (std::size_t i = 0; i < e.loads.size(); ++i) {
+    const auto* held = std::get_if<PrescribedDisplacement>(&e.loads[i]);
+    const std::array<std::optional<double>, 3> at_rest = {0.0, 0.0, 0.0};
+    if (!held || held->displacement != at_rest)
+      throw InputError(e.load_locations[i],
+                       "load: cannot act on a body that dries (allowed beside [fracture]: displacement_m = [0, 0, 0])");
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> integrator_names() { return {"explicit", "energy_momentum", "implicit_euler", "auto"}; }
@@ -139,6 +177,62 @@ std::vector<ModelChoice> with_motions(const std::vector<ModelChoice>& models, co
     all.back().in_motion = true;
   }
   return all;
+}
+
+void read_relaxation(const TomlTable& document, Experiment& experiment) {
+  const auto value = TomlTable(document.at("material"), keys_of("material")).find("relaxation");
+  if (!value) return;
+  if (document.find("fracture"))
+    refuse(*value, "stands beside [fracture], whose springs do not relax", "one of the two");
+  const TomlTable table(*value, keys_of("material.relaxation"));
+  experiment.relaxation.branches = read_branches(table.at("branches"));
+  experiment.relaxation_where = location_of(*value);
+  const auto after = table.find("equilibrium_after_s");
+  if (!after) return;
+  if (experiment.dynamics)
+    refuse(*after, "stands beside [dynamics], whose motions end at equilibria of long times", "one of the two");
+  experiment.loaded_for = as_number(*after, positive_number);
+}
+
+void check_relaxation(const Experiment& e) {
+  const auto is_exact = [](const Load& load) {
+    const auto* field = std::get_if<PrescribedField>(&load);
+    return field && field->kelvin;
+  };
+  if (!e.relaxation.acts() || !(e.line || std::any_of(e.loads.begin(), e.loads.end(), is_exact))) return;
+  throw InputError(e.relaxation_where,
+                   "material.relaxation: stands beside an exact line or field, which is of a material that does not "
+                   "relax (allowed: one of the two)");
+}
+
+void read_fracture(const TomlTable& document, Experiment& experiment) {
+  const auto value = document.find("fracture");
+  if (!value) return;
+  const TomlTable table(*value, keys_of("fracture"));
+  Fracture f;
+  f.shrinkage = as_number(table.at("shrinkage"), {"a number from 0 to 0.5", 0, 0.5, true, true});
+  f.threshold = as_number(table.at("threshold"), {"a number > 0, up to 1", 0, 1, false, true});
+  if (const auto given = table.find("steps")) f.steps = as_count(*given, 1e5);
+  if (const auto given = table.find("depth_m")) f.depth = as_number(*given, positive_number);
+  if (const auto given = table.find("scatter"))
+    f.scatter = as_number(*given, {"a number from 0 to 0.5", 0, 0.5, true, true});
+  if (const auto given = table.find("apart")) f.apart = as_number(*given, not_negative);
+  if (const auto given = table.find("seed")) f.seed = static_cast<std::uint64_t>(as_count(*given, 1e9));
+  if (const auto given = table.find("seeds")) f.seeds = as_count(*given, 1000);
+  // In a larger step all springs of an even body would reach their threshold at once.
+  if (f.shrinkage / f.steps > f.threshold)
+    refuse(table.at("shrinkage"),
+           fmt::format("is {:.4g} in each of {} steps, beyond the threshold", f.shrinkage / f.steps, f.steps),
+           fmt::format("shrinkage / steps up to the threshold, {:.4g}", f.threshold));
+  if (experiment.kinematics != "linear")
+    refuse(*value, fmt::format("does not go with kinematics = \"{}\"", experiment.kinematics), "\"linear\"");
+  for (const char* other : {"reference", "line", "section", "probe"})
+    if (const auto given = document.find(other))
+      refuse(*given, "does not go with [fracture]", "no such table: springs alone break");
+  check_supports(experiment);
+  experiment.fracture = f;
+  experiment.reference.elements.clear();
+  experiment.elements.clear();
 }
 
 }  // namespace springproof

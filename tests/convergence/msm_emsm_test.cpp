@@ -6,7 +6,6 @@
 #include "msm/dynamics/dynamics.h"
 #include "msm/measure/moduli.h"
 #include "msm/measure/stability.h"
-#include "msm/parameters/calibrate.h"
 #include "msm/periodic/bulk_calibration.h"
 #include "msm/statics/equilibrium.h"
 #include "support/zoo.h"

@@ -2,7 +2,6 @@
 // way, by the native library; positions.js does the same by WebAssembly's.   live_positions DIGITS
 #include <cstdio>
 #include <cstdlib>
-#include <initializer_list>
 
 #include "comparisons/live/live.h"
 

@@ -20,7 +20,7 @@ for name in "A force law" "A law of cells with constants of each" "A section of 
     /^```/ { if (inside) name = ""; inside = !inside; next }
     inside && name != "" { print > name }'
 done
-for file in msm/laws/{stiffening_springs,graded_volumes}.{h,cpp} comparisons/commands/count_command.{h,cpp} comparisons/report/page/counted.js; do
+for file in msm/laws/{stiffening_springs,graded_volumes}.{h,cpp} comparisons/commands/count_command.cpp comparisons/report/page/counted.js; do
   [ -s "$file" ] || { fail "no $file in $page"; exit 1; }
 done
 # The block of code of a section that has these words.   block SECTION WORDS
@@ -42,7 +42,7 @@ law() {  # SECTION WORDS-OF-ITS-ROW WORDS-OF-ITS-LINE WORDS-OF-ITS-CASE
 }
 law "A force law" '{"msm_stiffening"' 'laws.push_back(Stiffening' 'all.push_back({"Stiffening"'
 law "A law of cells with constants of each" '{"hybmss_graded"' 'laws.push_back(GradedVolumes' 'all.push_back({"Graded"'
-insert_after comparisons/commands/main.cpp '#include "comparisons/commands/compare_command.h"' '#include "comparisons/commands/count_command.h"'
+insert_after comparisons/commands/commands.h '// Each adds its options' "$(block "A subcommand" 'RunCommand count_command(CLI::App& parser);')"
 insert_after comparisons/commands/main.cpp 'constexpr Subcommand subcommands[] = {' "$(block "A subcommand" '{"count"')"
 insert_after comparisons/commands/export/export_command.cpp 'constexpr ExportForm forms[] = {' "$(block "An export format" '{"points"')"
 TEXT=$(block "An export format" 'int export_points') awk '/^\/\/\/ A form of export/ { print ENVIRON["TEXT"] "\n" } { print }' \

@@ -1,7 +1,6 @@
 // Grids whose cells are halved at random.
 #pragma once
 
-#include <algorithm>
 #include <random>
 
 #include "meshes/voxels/refined_grid.h"

@@ -1,10 +1,11 @@
-#include "comparisons/commands/describe/list_command.h"
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <string>
 #include <utility>
+#include <vector>
 
+#include "comparisons/commands/commands.h"
 #include "comparisons/run/expected_runs.h"
 #include "comparisons/sweep/find_cases.h"
 #include "comparisons/sweep/status.h"
@@ -72,7 +73,16 @@ void list_measures() {
   for (const Measure& measure : measure_table()) to_stdout("  {:<28}{}\n", measure.name, measure.what);
 }
 
-}  // namespace
+/// `springproof list [models | measures | CASE...]`.
+class ListCommand {
+ public:
+  void add_options(CLI::App& command);
+  /// Without names all that is built in; "models", "measures"; of a folder its cases; of a case its file.
+  int run() const;
+
+ private:
+  std::vector<std::string> names_;
+};
 
 void ListCommand::add_options(CLI::App& command) {
   command.add_option("WHAT", names_, "models; measures; a folder of cases; a case, whose file is named (default: all)");
@@ -103,5 +113,9 @@ int ListCommand::run() const {
   list_measures();
   return 0;
 }
+
+}  // namespace
+
+RunCommand list_command(CLI::App& parser) { return made<ListCommand>(parser); }
 
 }  // namespace springproof

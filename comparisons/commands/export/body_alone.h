@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "comparisons/commands/export/export_command.h"
+#include "comparisons/commands/export/export_request.h"
 #include "comparisons/prepare/prepared_case.h"
 
 namespace springproof {

@@ -1,5 +1,3 @@
-#include "comparisons/commands/export/export_command.h"
-
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -10,8 +8,10 @@
 
 #include "comparisons/calculix/cross_check.h"
 #include "comparisons/calculix/deck.h"
+#include "comparisons/commands/commands.h"
 #include "comparisons/commands/export/body_alone.h"
 #include "comparisons/commands/export/export_engines.h"
+#include "comparisons/commands/export/export_request.h"
 #include "comparisons/prepare/case_checks.h"
 #include "comparisons/prepare/springs_of_case.h"
 #include "comparisons/run/prepare.h"
@@ -333,7 +333,16 @@ constexpr ExportForm forms[] = {
     {"bullet", "tetrahedra for Bullet's deformable bodies, as .json", export_engine},
     {"mujoco", "tetrahedra for MuJoCo, as .xml", export_engine}};
 
-}  // namespace
+/// `springproof export CASE --to FORM`.
+class ExportCommand {
+ public:
+  void add_options(CLI::App& command);
+  /// @return 0.  @throws InputError, std::runtime_error if the file cannot be written.
+  int run() const;
+
+ private:
+  ExportRequest request_;
+};
 
 void ExportCommand::add_options(CLI::App& command) {
   ExportRequest& r = request_;
@@ -386,5 +395,9 @@ int ExportCommand::run() const {
       std::find_if(std::begin(forms), std::end(forms), [&](const ExportForm& f) { return f.name == request_.to; });
   return form->write(request_);
 }
+
+}  // namespace
+
+RunCommand export_command(CLI::App& parser) { return made<ExportCommand>(parser); }
 
 }  // namespace springproof

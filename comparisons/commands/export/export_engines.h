@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "comparisons/commands/export/export_command.h"
+#include "comparisons/commands/export/export_request.h"
 #include "msm/exchange/springs_file.h"
 
 namespace springproof {

@@ -1,5 +1,3 @@
-#include "comparisons/commands/material/homogenise_command.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -7,15 +5,18 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
 #include <vector>
 
+#include "comparisons/commands/commands.h"
 #include "comparisons/commands/material/material_options.h"
 #include "comparisons/sweep/status.h"
 #include "msm/algebra/dense.h"
 #include "msm/measure/statistics.h"
-#include "msm/parameters/calibrate.h"
 #include "msm/periodic/homogenise.h"
 #include "msm/periodic/periodic_model.h"
+#include "problem/case_file/experiment.h"
 #include "problem/system/streams.h"
 
 namespace springproof {
@@ -175,7 +176,20 @@ void print(const std::vector<Sample>& samples, const ModelParameters& p, const I
   to_stdout("\n{}\n", ratio_words(samples, p, m));
 }
 
-}  // namespace
+class HomogeniseCommand {
+ public:
+  void add_options(CLI::App& command);
+
+  /// Prints the table (or JSON).  @return 0.
+  /// @throws InputError if the moduli or the model cannot be used; std::runtime_error if the network is unstable.
+  int run() const;
+
+ private:
+  Moduli moduli_;
+  std::optional<int> nodes_;
+  ModelChoice choice_{"msm_random", {}, "msm_random", {}};
+  bool json_ = false;
+};
 
 void HomogeniseCommand::add_options(CLI::App& command) {
   add_moduli(command, moduli_);
@@ -199,5 +213,9 @@ int HomogeniseCommand::run() const {
     print(samples, p, m);
   return 0;
 }
+
+}  // namespace
+
+RunCommand homogenise_command(CLI::App& parser) { return made<HomogeniseCommand>(parser); }
 
 }  // namespace springproof

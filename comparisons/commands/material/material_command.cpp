@@ -1,14 +1,14 @@
-#include "comparisons/commands/material/material_command.h"
-
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <string>
 
+#include "comparisons/commands/commands.h"
 #include "comparisons/commands/material/material_options.h"
-#include "comparisons/engines/engine_facts.h"
+#include "comparisons/engines/engine_constants.h"
 #include "comparisons/results/facts.h"
 #include "msm/dynamics/time_step.h"
 #include "msm/measure/moduli.h"
@@ -17,9 +17,10 @@
 #include "msm/measure/validity.h"
 #include "msm/measure/waves.h"
 #include "msm/models.h"
-#include "msm/parameters/calibrate.h"
+#include "msm/parameters/model_table.h"
 #include "msm/periodic/bulk_calibration.h"
 #include "msm/topology/cubic_lattice.h"
+#include "problem/case_file/experiment.h"
 #include "problem/system/number_checks.h"
 #include "problem/system/streams.h"
 
@@ -286,7 +287,21 @@ std::vector<FactGroup> facts_of(const MaterialFacts& f) {
   return all;
 }
 
-}  // namespace
+class MaterialCommand {
+ public:
+  void add_options(CLI::App& command);
+
+  /// Prints the table (or JSON).  @return 0.
+  /// @throws InputError if the moduli or the model cannot be used.
+  int run() const;
+
+ private:
+  Moduli moduli_;
+  double density_ = 1000;
+  double cell_size_ = 0.1, frequency_ = 1;
+  ModelChoice choice_{recommended_model().name, {}, recommended_model().name, {}};
+  bool json_ = false;
+};
 
 void MaterialCommand::add_options(CLI::App& command) {
   add_moduli(command, moduli_);
@@ -308,5 +323,9 @@ int MaterialCommand::run() const {
   to_stdout("{}", json_ ? json_of(facts).dump(2) + "\n" : text_of(facts));
   return 0;
 }
+
+}  // namespace
+
+RunCommand material_command(CLI::App& parser) { return made<MaterialCommand>(parser); }
 
 }  // namespace springproof

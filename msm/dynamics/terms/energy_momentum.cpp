@@ -5,9 +5,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "msm/laws/anchors.h"
 #include "msm/laws/capabilities.h"
 #include "msm/laws/nodal_gradients.h"
-#include "msm/laws/turned_bond.h"
 
 namespace springproof {
 namespace {

@@ -1,7 +1,7 @@
 // Internal forces over a finite step that do exactly the work of the energy's change and have no torque.
 #pragma once
 
-#include "msm/laws/cell_forms.h"
+#include "msm/laws/averaged_springs.h"
 #include "msm/laws/laws.h"
 
 namespace springproof {

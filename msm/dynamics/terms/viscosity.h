@@ -1,8 +1,6 @@
 // Viscosity of a moving model: dashpots beside its springs, which resist the rate of strain and nothing else.
 #pragma once
 
-#include <string>
-
 #include "msm/laws/laws.h"
 #include "problem/material.h"
 

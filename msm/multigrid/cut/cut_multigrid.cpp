@@ -1,7 +1,5 @@
 #include "msm/multigrid/cut/cut_multigrid.h"
 
-#include <algorithm>
-
 #include "msm/algebra/fixed.h"
 
 namespace springproof {

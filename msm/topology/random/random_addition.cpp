@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
-#include <functional>
 #include <utility>
 
 namespace springproof {

@@ -1,12 +1,10 @@
 // A baseline that computes something else would be no baseline.
 #include <gtest/gtest.h>
 
+#include "comparisons/bench/baselines.h"
 #include "comparisons/bench/bodies.h"
-#include "comparisons/bench/gamg.h"
 #include "comparisons/bench/interrupt.h"
 #include "comparisons/bench/kernels/bench_kernel_choice.h"
-#include "comparisons/bench/lammps.h"
-#include "comparisons/bench/relaxation.h"
 #include "msm/statics/equilibrium.h"
 
 #include <nlohmann/json.hpp>

@@ -1,5 +1,5 @@
 // Depths in closed surfaces.
-#include "meshes/regions/enclosed.h"
+#include "meshes/regions/solid_shape.h"
 
 #include <gtest/gtest.h>
 

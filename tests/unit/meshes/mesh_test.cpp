@@ -4,8 +4,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
-#include <set>
 #include <stdexcept>
 
 #include "meshes/volume.h"

@@ -1,7 +1,6 @@
 // The three meshes of a reference on bodies of every kind: each really coarser than the next, and the same body.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <fstream>
 #include <numbers>
 

@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <ctime>
 #include <fstream>
-#include <sstream>
 
 #include "problem/system/input_error.h"
 #include "support/surfaces.h"

@@ -1,10 +1,6 @@
 // Predictions against cases that were not used to make them (docs/advise.md); all of them: springproof advise --check.
-#include "comparisons/advise/check.h"
 
 #include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
 
 #include "comparisons/advise/measure.h"
 #include "comparisons/run/case_run.h"

@@ -1,5 +1,5 @@
 // The file of held-out errors.
-#include "comparisons/advise/measurement.h"
+#include "comparisons/advise/measure.h"
 
 #include <gtest/gtest.h>
 

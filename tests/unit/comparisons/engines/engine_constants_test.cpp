@@ -8,8 +8,6 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "comparisons/engines/engine_facts.h"
-#include "comparisons/engines/five_tetrahedra.h"
 #include "meshes/volume.h"
 #include "msm/algebra/dense.h"
 

@@ -10,7 +10,6 @@
 #include <set>
 
 #include "comparisons/engines/engine_constants.h"
-#include "comparisons/engines/five_tetrahedra.h"
 #include "meshes/locate/outer_facets.h"
 #include "meshes/volume.h"
 #include "msm/dynamics/time_step.h"

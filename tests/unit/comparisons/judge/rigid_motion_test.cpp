@@ -1,11 +1,10 @@
 // What errors of the displacement are relative to.
-#include "comparisons/judge/rigid_motion.h"
+#include "comparisons/judge/deformation.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <cmath>
 
 #include "comparisons/judge/reference_value.h"
 #include "comparisons/run/case_run.h"

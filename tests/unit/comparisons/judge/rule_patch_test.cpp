@@ -6,7 +6,6 @@
 
 #include "comparisons/reference/reference_grids.h"
 #include "comparisons/reference/voxel_reference.h"
-#include "comparisons/run/case_run.h"
 #include "comparisons/run/prepare.h"
 #include "fem_reference/exchange/reference.h"
 #include "meshes/patches/rule_region.h"

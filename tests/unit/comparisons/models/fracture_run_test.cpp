@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
 
 #include "comparisons/results/crack_picture.h"
 #include "comparisons/run/case_run.h"

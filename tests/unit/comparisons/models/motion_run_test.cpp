@@ -1,5 +1,4 @@
 // Motions of a case, from its file to its rows and histories.
-#include "comparisons/models/motion_run.h"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,6 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "comparisons/run/case_run.h"
 #include "comparisons/run/prepare.h"
 #include "fem_reference/exchange/reference.h"
 #include "problem/exact_field.h"

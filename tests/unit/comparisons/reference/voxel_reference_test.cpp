@@ -8,7 +8,6 @@
 #include <cmath>
 
 #include "fem_reference/exchange/reference.h"
-#include "meshes/volume.h"
 #include "problem/system/run_cost.h"
 #include "support/voxel_case.h"
 

@@ -1,8 +1,6 @@
 // Which model the headline names, how sure of the reference it is, and what is no success.
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "problem/case_file/external.h"
 #include "unit/comparisons/report/headline_cases.h"
 

@@ -2,11 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "comparisons/report/page.h"
-#include "comparisons/reproduce/read_pictures.h"
+#include "comparisons/report/report.h"
 #include "comparisons/reproduce/reproduce.h"
 #include "problem/files/files.h"
 #include "problem/processes/child.h"

@@ -6,8 +6,6 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "comparisons/results/thin_surface.h"
-
 namespace springproof::picture_test {
 namespace {
 

@@ -1,5 +1,4 @@
 // Shares of a comparison, and what keeps those that compute them from each other.
-#include "comparisons/sweep/shard.h"
 
 #include <gtest/gtest.h>
 

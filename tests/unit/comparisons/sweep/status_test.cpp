@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <cstdio>
 
 #include "comparisons/run/expected_runs.h"
 #include "comparisons/sweep/time_left.h"

@@ -1,10 +1,8 @@
 // Patches have the area of their rules, on every mesh, and the body stays as it is.
-#include "meshes/patches/imprint.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <cmath>
 #include <filesystem>
 #include <map>
 

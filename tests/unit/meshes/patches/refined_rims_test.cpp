@@ -1,5 +1,5 @@
 // Tetrahedra are small where held patches end on a smooth surface.
-#include "meshes/patches/refined_rims.h"
+#include "meshes/patches/rim.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,6 @@
 
 #include "msm/algebra/dense.h"
 #include "msm/coarsening/cell_patches.h"
-#include "msm/coarsening/force_fit.h"
 #include "msm/coarsening/layered_solver.h"
 #include "msm/coarsening/measure_cells.h"
 #include "msm/coarsening/states.h"

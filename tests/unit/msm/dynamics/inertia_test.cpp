@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "msm/dynamics/time_step.h"
 #include "msm/models.h"
 #include "support/refined_cells.h"
 #include "support/solids.h"

@@ -2,8 +2,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <functional>
-
 #include "msm/dynamics/lattice_motion.h"
 #include "msm/dynamics/time_step.h"
 #include "support/zoo.h"

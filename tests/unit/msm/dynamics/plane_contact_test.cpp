@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "msm/dynamics/time_step.h"
 #include "support/flight.h"
 

@@ -1,8 +1,6 @@
 // How motions start: the course of loads, and the order of the first step.
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "msm/dynamics/dynamics.h"
 #include "problem/course.h"
 #include "support/zoo.h"

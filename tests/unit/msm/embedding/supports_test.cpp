@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <set>
-
 #include "msm/models.h"
 #include "msm/statics/equilibrium.h"
 #include "support/solids.h"

@@ -12,7 +12,6 @@
 #include "msm/embedding/boundary.h"
 #include "msm/models.h"
 #include "msm/statics/equilibrium.h"
-#include "msm/topology/cubic_lattice.h"
 #include "support/tolerances.h"
 #include "support/zoo.h"
 

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
-#include <cmath>
 
 #include "meshes/volume.h"
 #include "msm/laws/nodal_gradients.h"

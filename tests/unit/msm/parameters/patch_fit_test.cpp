@@ -1,5 +1,4 @@
 // Disordered networks whose springs pass the patch test: every affine strain in equilibrium at every node.
-#include "msm/parameters/patch_fit.h"
 
 #include <gtest/gtest.h>
 

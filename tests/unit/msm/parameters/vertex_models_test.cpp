@@ -12,9 +12,7 @@
 #include "meshes/volume.h"
 #include "msm/embedding/surface_shares.h"
 #include "msm/laws/dispersion_weights.h"
-#include "msm/parameters/patch_fit.h"
 #include "msm/statics/equilibrium.h"
-#include "msm/topology/vertex_network.h"
 #include "support/zoo.h"
 
 namespace springproof::vertex_models_test {

@@ -4,7 +4,6 @@
 
 #include <set>
 
-#include <cmath>
 #include <numbers>
 
 #include "problem/case_file/measures.h"

@@ -1,5 +1,5 @@
 // Measured histories: files, and the values that they become.
-#include "problem/case_file/history_file.h"
+#include "problem/case_file/experiment_parts.h"
 
 #include <gtest/gtest.h>
 

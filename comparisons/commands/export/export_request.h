@@ -1,4 +1,4 @@
-// The subcommand `springproof export`: a case, or a body alone, for another program.
+// What `springproof export` is asked for.
 #pragma once
 
 #include <optional>
@@ -6,10 +6,6 @@
 #include <vector>
 
 #include "problem/material.h"
-
-namespace CLI {
-class App;
-}
 
 namespace springproof {
 
@@ -26,17 +22,6 @@ struct ExportRequest {
   std::vector<int> cells;
   std::optional<int> voxels;
   bool whole_cubes = false;
-};
-
-/// `springproof export CASE --to FORM`.
-class ExportCommand {
- public:
-  void add_options(CLI::App& command);
-  /// @return 0.  @throws InputError, std::runtime_error if the file cannot be written.
-  int run() const;
-
- private:
-  ExportRequest request_;
 };
 
 }  // namespace springproof

@@ -1,4 +1,4 @@
-#include "comparisons/commands/describe/versions.h"
+#include "comparisons/commands/versions.h"
 
 #include <fmt/format.h>
 #include <xxhash.h>
