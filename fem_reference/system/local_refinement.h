@@ -8,9 +8,9 @@
 
 namespace springproof::fem {
 
-/// The mesh with the longest edges of those cells bisected, once, that have the largest estimated errors, until there are
-/// `most` cells: a cell's error is the distance of its strain's deviator from the mean of the cells of its material at
-/// each corner (Zienkiewicz and Zhu 1987).
+/// The mesh with the longest edges of those cells bisected, once, that have the largest estimated errors, until there
+/// are `most` cells: a cell's error is the distance of its strain's deviator from the mean of the cells of its material
+/// at each corner (Zienkiewicz and Zhu 1987).
 /// @param mesh that the body is of
 /// @param displacement of second order, with current ghost values
 /// @param shortest edge that a cut may leave [m]: under a point force, and at a rim, the error is never spread evenly

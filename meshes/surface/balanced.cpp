@@ -11,9 +11,9 @@ namespace springproof {
 namespace {
 
 constexpr double most_motion = 0.25;  // a point moves, in edges of a facet at it
-constexpr double regular = 1e-3;   // share of the motion that no facet demands
-constexpr double level = 1e-6;     // of its edge: a facet of less height lies in a plane of the body
-constexpr double stiff = 1e6;      // weight of such a facet's demand over others'
+constexpr double regular = 1e-3;      // share of the motion that no facet demands
+constexpr double level = 1e-6;        // of its edge: a facet of less height lies in a plane of the body
+constexpr double stiff = 1e6;         // weight of such a facet's demand over others'
 
 /// What the facets at a point demand of its motion d: sum A (n.d - s)^2.
 struct Demand {

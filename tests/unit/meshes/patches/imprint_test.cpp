@@ -1,4 +1,5 @@
 // Patches have the area of their rules, on every mesh, and the body stays as it is.
+#include "meshes/patches/imprint.h"
 
 #include <gtest/gtest.h>
 
