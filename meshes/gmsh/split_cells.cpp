@@ -9,6 +9,8 @@
 #include <optional>
 #include <set>
 
+#include "problem/vector.h"
+
 namespace springproof {
 namespace {
 
