@@ -135,13 +135,17 @@ MeshedBody of_solid(MeshedBody body, double volume) {
 }
 
 /// Moves the outer nodes so that the facets are balanced across the body's surface; back where a cell would lose most
-/// of its volume.
-void balance(Mesh& mesh) {
+/// of its volume.  A script is drawn into a box that lattices fill: nodes stay in it.
+void balance(Mesh& mesh, bool in_box) {
   constexpr double least = 0.25;
   const Mesh before = mesh;
   const Surface outside = outside_of(mesh);
   const Surface moved = balanced(outside, heights_above(mesh, outside));
   for (Eigen::Index n = 0; n < mesh.nodes.rows(); ++n) mesh.nodes.row(n) = moved.points[n].transpose();
+  if (in_box)
+    for (int c = 0; c < 3; ++c)
+      mesh.nodes.col(c) =
+          mesh.nodes.col(c).cwiseMax(before.nodes.col(c).minCoeff()).cwiseMin(before.nodes.col(c).maxCoeff());
   const Eigen::VectorXd whole = cell_volumes(before, before.nodes);
   for (bool any = true; any;) {
     any = false;
@@ -160,7 +164,7 @@ OneMesh balanced_mesh(const MeshRequest& r, const GmshSession& session, double e
   OneMesh made{{}, {}, edge};
   made.mesh = fill_with_tetrahedra(r, session, made.notes);
   try {
-    balance(made.mesh);
+    balance(made.mesh, extension_of(r.file) == ".geo");
     session.stop_on_error(r.file);
   } catch (const std::exception& e) {
     made.notes.push_back(fmt::format("facets are chords of curved surfaces: {}", e.what()));
