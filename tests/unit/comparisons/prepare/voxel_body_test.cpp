@@ -154,7 +154,8 @@ TEST(VoxelBody, ThinPartsAreSaidToBeLost) {
     for (const std::string& note : prepare(parse_experiment(text, "ball.toml")).body.notes) all += note + "\n";
     return all;
   };
-  // 8 cubes of 0.1 m fill the box around the ball: 6 / pi = 1.91 times its volume (0.3 % more, as its facets stay in the box).
+  // 8 cubes of 0.1 m fill the box around the ball: 6 / pi = 1.91 times its volume (0.3 % more, as its facets stay in
+  // the box).
   const std::string whole = "voxel_edge_m = 0.1\ncut = false";
   EXPECT_NE(notes(whole).find("8 cubes of 0.1 m fill 1.9"), std::string::npos) << notes(whole);
   EXPECT_EQ(notes("voxel_edge_m = 0.1").find("cubes of 0.1 m fill"), std::string::npos) << "no model takes them";
