@@ -13,37 +13,47 @@
 namespace springproof {
 namespace {
 
-/// Of the edges of the facets on a surface of the model, the points of it above their middles: by the middles of their
-/// parameters or, where those are not near (seams, poles), the nearest.
-/// @param facets tags of the corners, three of each facet
-std::vector<Vec3> above_middles(int surface, const std::vector<std::size_t>& facets) {
-  constexpr double near = 0.25;  // of an edge
+struct SurfaceNode {
+  Vec3 at;
+  Eigen::Vector2d parameters;
+};
+
+/// Nodes on a surface of the model and its rim, by their tags.
+std::map<std::size_t, SurfaceNode> nodes_on(int surface) {
   std::vector<std::size_t> tags;
   std::vector<double> coordinates, parametric;
   gmsh::model::mesh::getNodes(tags, coordinates, parametric, 2, surface, true, true);
   if (parametric.size() != 2 * tags.size()) throw std::runtime_error("a surface has no parameters");
-  std::map<std::size_t, std::size_t> number;
-  for (std::size_t i = 0; i < tags.size(); ++i) number[tags[i]] = i;
-  std::vector<double> middles, values;
-  std::vector<Vec3> straight;
-  std::vector<double> lengths;
+  std::map<std::size_t, SurfaceNode> nodes;
+  for (std::size_t i = 0; i < tags.size(); ++i)
+    nodes[tags[i]] = {Vec3::Map(&coordinates[3 * i]), Eigen::Vector2d::Map(&parametric[2 * i])};
+  return nodes;
+}
+
+/// From the middles of the facets' edges to the surface: to where the parameters are the middle of the ends' or, if
+/// that is not near (seams, poles), to the nearest point.
+/// @param facets tags of the corners, three of each facet
+/// @return three of each facet
+std::vector<Vec3> bows(int surface, const std::map<std::size_t, SurfaceNode>& nodes,
+                       const std::vector<std::size_t>& facets) {
+  constexpr double near = 0.25;  // of an edge; of a chord of a circle the bow is that of 106 degrees
+  const auto end = [&](std::size_t i) -> const SurfaceNode& { return nodes.at(facets[i % 3 < 2 ? i + 1 : i - 2]); };
+  std::vector<double> parameters, points;
   for (std::size_t i = 0; i < facets.size(); ++i) {
-    const std::size_t p = number.at(facets[i]), q = number.at(facets[i % 3 < 2 ? i + 1 : i - 2]);
-    for (int c = 0; c < 2; ++c) middles.push_back((parametric[2 * p + c] + parametric[2 * q + c]) / 2);
-    const Vec3 from = Vec3::Map(&coordinates[3 * p]), to = Vec3::Map(&coordinates[3 * q]);
-    straight.push_back((from + to) / 2);
-    lengths.push_back((to - from).norm());
+    const Eigen::Vector2d middle = (nodes.at(facets[i]).parameters + end(i).parameters) / 2;
+    parameters.insert(parameters.end(), {middle.x(), middle.y()});
   }
-  gmsh::model::getValue(2, surface, middles, values);
-  std::vector<Vec3> points;
-  for (std::size_t i = 0; i < straight.size(); ++i) {
-    points.push_back(Vec3::Map(&values[3 * i]));
-    if ((points[i] - straight[i]).norm() < near * lengths[i]) continue;
+  gmsh::model::getValue(2, surface, parameters, points);
+  std::vector<Vec3> bows;
+  for (std::size_t i = 0; i < facets.size(); ++i) {
+    const Vec3 &from = nodes.at(facets[i]).at, &to = end(i).at, middle = (from + to) / 2;
+    bows.push_back(Vec3::Map(&points[3 * i]) - middle);
+    if (bows[i].norm() < near * (to - from).norm()) continue;
     std::vector<double> nearest, at;
-    gmsh::model::getClosestPoint(2, surface, {straight[i].x(), straight[i].y(), straight[i].z()}, nearest, at);
-    points[i] = Vec3::Map(nearest.data());
+    gmsh::model::getClosestPoint(2, surface, {middle.x(), middle.y(), middle.z()}, nearest, at);
+    bows[i] = Vec3::Map(nearest.data()) - middle;
   }
-  return points;
+  return bows;
 }
 
 }  // namespace
@@ -60,27 +70,21 @@ std::vector<double> heights_above(const Mesh& mesh, const Surface& outside) try 
   gmsh::vectorpair volumes, surfaces;
   gmsh::model::getEntities(volumes, 3);
   gmsh::model::getBoundary(volumes, surfaces, true, false, false);
-  std::vector<std::size_t> tags;
-  std::vector<double> coordinates, parametric;
-  gmsh::model::mesh::getNodes(tags, coordinates, parametric, -1, -1, false, false);
-  std::map<std::size_t, Vec3> at;
-  for (std::size_t i = 0; i < tags.size(); ++i) at[tags[i]] = Vec3::Map(&coordinates[3 * i]);
-  for (const auto& [dimension, surface] : surfaces)
+  for (const auto& [dimension, surface] : surfaces) {
+    const std::map<std::size_t, SurfaceNode> nodes = nodes_on(surface);
     for (const ElementBlock& b : elements(2, {surface})) {
       if (b.nodes != 3) continue;
-      const std::vector<Vec3> above = above_middles(surface, b.node_tags);
+      const std::vector<Vec3> of_edges = bows(surface, nodes, b.node_tags);
       for (std::size_t i = 0; i < b.node_tags.size(); i += 3) {
         std::array<int, 3> facet;
-        Vec3 rise = Vec3::Zero();
         for (int c = 0; c < 3; ++c) {
-          const Vec3 &from = at.at(b.node_tags[i + c]), &to = at.at(b.node_tags[i + (c + 1) % 3]);
-          rise += (above[i + c] - (from + to) / 2) / 3;
-          const auto found = number.find(place(from));
+          const auto found = number.find(place(nodes.at(b.node_tags[i + c]).at));
           facet[c] = found == number.end() ? -1 : found->second;
         }
-        rises[sorted(facet)] = rise;
+        rises[sorted(facet)] = (of_edges[i] + of_edges[i + 1] + of_edges[i + 2]) / 3;
       }
     }
+  }
   std::vector<double> heights;
   for (const auto& [a, b, c] : outside.triangles) {
     const Vec3 &A = outside.points[a], &B = outside.points[b], &C = outside.points[c];
