@@ -75,8 +75,8 @@ std::array<double, 8> weights_of_middle(const FilledPart& part) {
   return weights;
 }
 
-/// The strain at a place that is linear in some cells and nearest to their mean strains; where the cells do not span
-/// the space nothing, or their mean.
+/// The strain at a place that is linear in some cells and nearest to their mean strains; nothing where the cells do not
+/// span the space.
 class LinearStrain {
  public:
   LinearStrain(const Network& network, const Strains& of_cells)
@@ -92,8 +92,7 @@ class LinearStrain {
     }
   }
 
-  std::optional<Eigen::Matrix<double, 1, 9>> operator()(const std::set<int>& cells, const Eigen::RowVector3d& X,
-                                                        bool or_mean = false) const {
+  std::optional<Eigen::Matrix<double, 1, 9>> operator()(const std::set<int>& cells, const Eigen::RowVector3d& X) const {
     Eigen::Matrix4d moments = Eigen::Matrix4d::Zero();
     Eigen::Matrix<double, 4, 9> sum = Eigen::Matrix<double, 4, 9>::Zero();
     double volume = 0;
@@ -106,9 +105,18 @@ class LinearStrain {
     }
     const Vec3 mean = moments.col(0).tail<3>() / volume;
     const Eigen::Matrix3d spread = moments.bottomRightCorner<3, 3>() / volume - mean * mean.transpose();
-    if (spread.selfadjointView<Eigen::Lower>().eigenvalues()[0] < least_spread)
-      return or_mean ? std::optional(Eigen::Matrix<double, 1, 9>(sum.row(0) / volume)) : std::nullopt;
+    if (spread.selfadjointView<Eigen::Lower>().eigenvalues()[0] < least_spread) return {};
     return moments.ldlt().solve(sum).row(0).eval();
+  }
+
+  Eigen::Matrix<double, 1, 9> mean(const std::vector<int>& cells) const {
+    Eigen::Matrix<double, 1, 9> sum = Eigen::Matrix<double, 1, 9>::Zero();
+    double volume = 0;
+    for (const int c : cells) {
+      sum += volume_[c] * of_cells_.row(c);
+      volume += volume_[c];
+    }
+    return sum / volume;
   }
 
  private:
@@ -218,8 +226,7 @@ NodalStresses recovered_stress(const MassSpringModel& model, const NodalVectors&
     for (int ring = 0; ring < most_rings && !(strain = linear(cells, network.X.row(all.node[n]))); ++ring)
       cells = cells_at_corners(all, at, cells);
     const AveragedSprings& own = law->in(network.cells.material(at[n].front()));
-    if (!strain) strain = linear({at[n].begin(), at[n].end()}, network.X.row(all.node[n]), true);
-    const Eigen::Matrix3d E = as_matrix(*strain);
+    const Eigen::Matrix3d E = as_matrix(strain ? *strain : linear.mean(at[n]));
     const Eigen::Matrix3d S = 2 * own.shear_modulus * E + own.lame_lambda * E.trace() * Eigen::Matrix3d::Identity();
     stress.row(static_cast<Eigen::Index>(n)) << S.diagonal().transpose(), S(0, 1), S(1, 2), S(0, 2);
   }
