@@ -19,6 +19,7 @@
 #include "meshes/volume.h"
 #include "problem/case_file/experiment.h"
 #include "problem/case_file/keys.h"
+#include "problem/case_file/toml_reader.h"
 #include "problem/material.h"
 #include "problem/system/number_checks.h"
 #include "problem/system/streams.h"
@@ -114,7 +115,12 @@ std::string cell_words(const Measured& m, int cells) {
 /// A TOML string, as of JSON.
 std::string quoted(const std::string& text) { return nlohmann::json(text).dump(); }
 
-std::string list(const Vec3& v) { return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", v[0], v[1], v[2]); }
+/// Round-off of a component is 0: a case takes no numbers as small as 1e-34.
+std::string list(const Vec3& v) {
+  const double least = std::max(1e-12 * v.cwiseAbs().maxCoeff(), smallest_number);
+  const Vec3 w = (v.array().abs() < least).select(0, v);
+  return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", w[0], w[1], w[2]);
+}
 
 std::string body_of(const Measured& m, const MeshRequest& request, const std::string& geo) {
   const int coarse = cells_for(m, 1500, 20000), fine = std::min(4 * coarse, 60000);
