@@ -301,12 +301,13 @@ PilotModel pilot_of_refined(const PilotRun& run) try {
   const Mesh& body = *run.prepared.body.tetrahedra.back();
   const VoxelGrid& coarse = run.every.front()->cut->grid;
   const double of_cube = static_cast<double>(lattice.cut->cells.size()) / cells_of(lattice);
-  double promised = refine_until(run.prepared, coarse, body, 1).promised;
+  Refinement refinement(run.prepared, coarse, body);
+  double promised = refinement.until(1).promised();
   const auto most = static_cast<double>(run.reference.front()->cut->cells.size());
   while (out.cells.size() < 4) {
     const double start = cpu_seconds();
-    RefinedBody refined = refine_until(run.prepared, coarse, body, 0.8 * promised);
-    promised = refined.promised;
+    RefinedBody refined = refinement.until(0.8 * promised);
+    promised = refined.promised();
     const auto cut_cells = static_cast<double>(refined.cut.cells.size());
     if (!refined.reached || cut_cells > 2 * most) break;
     Lattice finer = lattice;

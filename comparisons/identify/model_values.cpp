@@ -39,7 +39,6 @@ std::vector<std::size_t> by_fineness(const Body& body, std::size_t count) {
   };
   sort_by(body.voxel_counts, std::less<>());
   sort_by(body.voxel_edges, std::greater<>());
-  sort_by(body.accuracies, std::greater<>());
   return order;
 }
 

@@ -179,7 +179,8 @@ ModelSample measured(const PreparedCase& prepared, const Lattice& lattice, const
       cut ? displacement_at(cells_of(lattice, parameters), sample.state.displacement, measured_points(prepared))
           : at_measured_points(prepared, lattice, sample.field.displacement));
   if (cut && averaged_springs_of(built.model) && asked(e, "promised_error") && !in_motion)
-    sample.scalars["promised_error"] = cell_energies(built.model, sample.state.displacement).promised_error();
+    sample.scalars["promised_error"] =
+        lattice.falls_short * cell_energies(built.model, sample.state.displacement).estimated_error();
   if (recovers_stress(e, built.model) && !in_motion && (cut || network.cells.corners == mesh->hexahedra))
     sample.stress = recovered_stress(built.model, sample.state.displacement);
   const bool by_material = !network.cells.materials.empty();

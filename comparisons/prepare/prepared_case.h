@@ -44,12 +44,13 @@ struct Lattice {
   std::shared_ptr<FittedNetworks> fits = std::make_shared<FittedNetworks>();  ///< on the vertices of `tetrahedra`
   std::shared_ptr<const CutBody> cut = {};         ///< of a body of voxels, if a model takes cut cells, else empty
   std::shared_ptr<MeasuredLattice> measured = {};  ///< of cut cells, if a model takes measured ones, else empty
-  double promised = 0;                             ///< error of a refined lattice; 0: its cells are of one size
+  double estimated = 0;                            ///< error of a refined lattice; 0: its cells are of one size
+  double falls_short = 1;                          ///< by what its estimates must be multiplied
   Eigen::Index first_node = 0;                     ///< first row of its nodes in fem::Solution::displacement
 
-  /// What errors of cut cells are proportional to: the edge of the cells, or the promised error of those of several
+  /// What errors of cut cells are proportional to: the edge of the cells, or the estimated error of those of several
   /// sizes.
-  double error_scale() const { return promised > 0 ? promised : voxel_edge; }
+  double error_scale() const { return estimated > 0 ? estimated : voxel_edge; }
 };
 
 /// The body, and the meshes that finite elements take of it.

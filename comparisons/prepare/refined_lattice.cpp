@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "msm/measure/promised_error.h"
 #include "msm/statics/equilibrium.h"
 #include "problem/processes/child.h"
 #include "problem/system/progress.h"
@@ -15,14 +14,14 @@ namespace {
 
 constexpr std::size_t most_cells = 100000;
 
-/// The energies of the material whose promised error is the largest.
-CellEnergies worst_energies(const PreparedCase& prepared, const CutBody& cut, const Mesh& body) {
+/// The energies of the lattice in each material of the case.
+std::vector<CellEnergies> energies_of(const PreparedCase& prepared, const CutBody& cut, const Mesh& body) {
   const auto parameters = std::find_if(prepared.models.begin(), prepared.models.end(),
                                        [](const ModelParameters& p) { return p.cut.value_or(false); });
   std::set<std::string> held;
   for (const Load& load : prepared.loads)
     if (prescribes_displacement(load)) held.insert(*patch_of(load));
-  CellEnergies worst;
+  std::vector<CellEnergies> energies;
   for (const IsotropicMaterial& material : prepared.experiment.materials) {
     const EmbeddedModel built = build_cut(*parameters, cut, {held.begin(), held.end()}, body, material);
     BoundaryConditions conditions =
@@ -33,25 +32,41 @@ CellEnergies worst_energies(const PreparedCase& prepared, const CutBody& cut, co
     if (children_interrupted()) throw std::runtime_error("interrupted");
     const Equilibrium state = solve_linear(built.model, conditions);
     if (!state.ok) throw InputError(fmt::format("body.accuracy: {}", state.message));
-    CellEnergies energies = cell_energies(built.model, state.displacement);
-    if (worst.error.empty() || energies.promised_error() > worst.promised_error()) worst = std::move(energies);
+    energies.push_back(cell_energies(built.model, state.displacement));
   }
-  return worst;
+  return energies;
 }
 
 }  // namespace
 
-RefinedBody refine_until(const PreparedCase& prepared, VoxelGrid grid, const Mesh& body, double accuracy) {
+Refinement::Refinement(const PreparedCase& prepared, VoxelGrid grid, const Mesh& body)
+    : prepared_(prepared), grid_(std::move(grid)), body_(body), by_material_(prepared.experiment.materials.size()) {}
+
+void Refinement::solve() {
+  cut_ = cut_body(grid_, body_);
+  estimated_ = 0;
+  falls_short_ = 1;
+  const std::vector<CellEnergies> energies = energies_of(prepared_, cut_, body_);
+  for (std::size_t m = 0; m < energies.size(); ++m) {
+    by_material_[m].push_back({energies[m].estimated_error(), energies[m].elastic});
+    const std::optional<double> by = falls_short(by_material_[m]);
+    if (energies[m].estimated_error() > estimated_) errors_ = energies[m].larger();
+    estimated_ = std::max(estimated_, energies[m].estimated_error());
+    falls_short_ = by && falls_short_ ? std::optional(std::max(*by, *falls_short_)) : std::nullopt;
+  }
+}
+
+RefinedBody Refinement::until(double accuracy) {
+  if (errors_.empty()) solve();
   while (true) {
-    RefinedBody refined{cut_body(grid, body)};
-    progress::detail(
-        [&] { return fmt::format("refining for {:.3g} %: {} cells", 100 * accuracy, refined.cut.cells.size()); });
-    const CellEnergies energies = worst_energies(prepared, refined.cut, body);
-    refined.promised = energies.promised_error();
-    refined.reached = refined.promised <= accuracy;
-    if (refined.reached || refined.cut.cells.size() > most_cells ||
-        !halve_worst_cells(refined.cut, energies.larger(), grid))
-      return refined;
+    const bool reached = falls_short_ && *falls_short_ * estimated_ <= accuracy;
+    if (reached || cut_.cells.size() > most_cells || !halve_worst_cells(cut_, errors_, grid_))
+      return {cut_, estimated_, falls_short_.value_or(1), reached};
+    solve();
+    progress::detail([&] {
+      return fmt::format("refining for {:.3g} %: {} cells promise {:.3g} %", 100 * accuracy, cut_.cells.size(),
+                         100 * falls_short_.value_or(1) * estimated_);
+    });
   }
 }
 

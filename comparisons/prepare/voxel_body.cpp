@@ -196,7 +196,7 @@ std::string refinement_note(const RefinedBody& refined, double accuracy) {
   return fmt::format(
       "{} cells, refined where the stress is least certain, promise a displacement error of {:.2g} %; {:.3g} % "
       "were asked for{}",
-      refined.cut.cells.size(), 100 * refined.promised, 100 * accuracy,
+      refined.cut.cells.size(), 100 * refined.promised(), 100 * accuracy,
       refined.reached ? "" : ", which smaller cells than these would take");
 }
 
@@ -236,17 +236,21 @@ void cut_lattices(PreparedCase& prepared) {
     if (takes_whole_cubes(prepared)) compare_volumes(cubes, grid.edge, region->volume, prepared.body.notes);
     add_lattice({grid.cells, std::make_shared<Mesh>(std::move(voxels.mesh)), grid.edge, region}, prepared);
   };
+  Refinement refinement(prepared, voxel_grid(true_body, edges.front()), true_body);
   for (const double accuracy : prepared.experiment.body.accuracies) {
-    RefinedBody refined = refine_until(prepared, voxel_grid(true_body, edges.front()), true_body, accuracy);
+    RefinedBody refined = refinement.until(accuracy);
+    std::vector<Lattice>& lattices = prepared.lattices;
+    if (!lattices.empty() && lattices.back().cut->cells.size() == refined.cut.cells.size()) continue;  // promised, too
     const auto cells = static_cast<double>(refined.cut.cells.size());
     const VoxelGrid cubes = voxel_grid(true_body, std::cbrt(region->volume / cells));  // for results, and whole cubes
-    if (!prepared.lattices.empty() && prepared.lattices.back().cells == cubes.cells) prepared.lattices.pop_back();
+    if (!lattices.empty() && lattices.back().cells == cubes.cells) lattices.pop_back();
     add_cubes(cubes);
     prepared.body.notes.push_back(refinement_note(refined, accuracy));
     prepared.body.notes.push_back(cut_cells_note(prepared, refined.cut));
     prepared.body.notes.insert(prepared.body.notes.end(), refined.cut.notes.begin(), refined.cut.notes.end());
-    prepared.lattices.back().promised = refined.promised;
-    prepared.lattices.back().cut = std::make_shared<CutBody>(std::move(refined.cut));
+    lattices.back().estimated = refined.estimated;
+    lattices.back().falls_short = refined.falls_short;
+    lattices.back().cut = std::make_shared<CutBody>(std::move(refined.cut));
   }
   if (!prepared.experiment.body.accuracies.empty()) return;
   for (const double edge : edges) {

@@ -23,8 +23,8 @@ std::vector<ExtrapolatedModel> extrapolate_cut_cells(const PreparedCase& prepare
     ExtrapolatedModel limit;
     limit.label = prepared.experiment.models[model].label + extrapolated_suffix;
     limit.lattice = fine.lattice;
-    limit.from = prepared.lattices[fine.lattice].promised > 0
-                     ? fmt::format("from promised errors of {:.3g} and {:.3g}", H, h)
+    limit.from = prepared.lattices[fine.lattice].estimated > 0
+                     ? fmt::format("from estimated errors of {:.3g} and {:.3g}", H, h)
                      : fmt::format("from edges of {:.4g} and {:.4g} m", H, h);
     const NodalVectors from_coarse =
         displacement_at(cells_of(prepared.lattices[coarse.lattice], prepared.models[model]), coarse.displacement,

@@ -27,7 +27,7 @@ struct ExtrapolatedModel {
 };
 
 /// The two finest lattices of each model, extrapolated to an edge of zero as errors that fall with the edge, which
-/// those of notches, creases and parts few cells thick do, or with the promised error of refined lattices; whole cubes
+/// those of notches, creases and parts few cells thick do, or with the estimated error of refined lattices; whole cubes
 /// have no such limit, as their staircase jumps. Nothing for a model with one lattice, or two whose edges differ by
 /// less than least_ratio.
 std::vector<ExtrapolatedModel> extrapolate_cut_cells(const PreparedCase& prepared, const std::vector<CutState>& states);

@@ -17,6 +17,7 @@ namespace {
 
 constexpr double share_of_the_error = 0.3;  // of the cells that are halved at once
 constexpr int most_halvings = 4;
+constexpr double least_fall = 1.1;    // of an estimate, for how far it falls short
 constexpr double least_spread = 0.1;  // variance of the middles of cells along any axis, in edges; of eight cells 1/4
 constexpr int most_rings = 3;         // of cells around a node
 
@@ -168,10 +169,29 @@ std::vector<int> worst_cells(const std::vector<double>& errors, double share) {
 
 }  // namespace
 
-double CellEnergies::promised_error() const {
+double CellEnergies::estimated_error() const {
   double sum = 0;
   for (std::size_t c = 0; c < error.size(); ++c) sum += std::max(error[c], anchors[c]);
   return elastic > 0 ? sum / elastic : 0;
+}
+
+std::optional<double> falls_short(const std::vector<LatticeEstimate>& lattices) {
+  const auto n = static_cast<double>(lattices.size());
+  double error = 0, elastic = 0, largest = 0;
+  for (const LatticeEstimate& l : lattices) {
+    error += l.error / n;
+    elastic += l.elastic / n;
+    largest = std::max(largest, l.error);
+  }
+  if (largest < least_fall * lattices.back().error) return {};
+  double both = 0, square = 0;
+  for (const LatticeEstimate& l : lattices) {
+    both += (l.error - error) * (l.elastic - elastic);
+    square += (l.error - error) * (l.error - error);
+  }
+  const double slope = both / square, limit = elastic - slope * error;
+  if (limit <= 0) return {};
+  return std::max(1.0, std::abs(slope) / limit);
 }
 
 const std::vector<double>& CellEnergies::larger() const { return sum_of(error) < sum_of(anchors) ? anchors : error; }

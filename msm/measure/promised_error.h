@@ -1,6 +1,7 @@
 // Stress of cells of averaged springs, recovered at nodes, and their error, estimated without a reference.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "meshes/voxels/cut_cells.h"
@@ -14,10 +15,10 @@ struct CellEnergies {
   std::vector<double> anchors;  ///< of those that hold each cell: a support does not give way [J]
   double elastic = 0;           ///< of all cells and anchors [J]
 
-  /// Promised relative error of the displacement: of each cell the larger of the two energies, over that of the
+  /// Estimated relative error of the displacement: of each cell the larger of the two energies, over that of the
   /// displacement.  Under given forces the displacement in their direction is too small by the cells' fraction, if
   /// their energy of the error is right, and too large by the anchors'.
-  double promised_error() const;
+  double estimated_error() const;
   /// Those of the two energies that sum to more: to be made smaller first.
   const std::vector<double>& larger() const;
 };
@@ -29,6 +30,19 @@ struct CellEnergies {
 /// @return one error per cell
 /// @throws std::invalid_argument if the model has no averaged springs.
 CellEnergies cell_energies(const MassSpringModel& model, const NodalVectors& displacement);
+
+/// What a lattice of a body says of itself.
+struct LatticeEstimate {
+  double error = 0;    ///< CellEnergies::estimated_error
+  double elastic = 0;  ///< energy under the loads [J]
+};
+
+/// How many times as large as estimated the error is, at least 1: if the estimates are all wrong by one factor kappa,
+/// the energies are E (1 - kappa error) or, where supports are moved, E (1 + kappa error); of the straight line that is
+/// nearest to them.  Creases that a lattice does not resolve are in its energy, not in its estimate.
+/// @param lattices of the same body and loads, the finest last
+/// @return nothing unless an estimate is 1.1 times the last, nor where the line ends beyond zero
+std::optional<double> falls_short(const std::vector<LatticeEstimate>& lattices);
 
 /// xx yy zz xy yz xz [Pa], one row per node.
 using NodalStresses = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>;

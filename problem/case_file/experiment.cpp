@@ -88,6 +88,7 @@ Body read_body(const TomlValue& value) {
   if (const auto accuracy = table.find("accuracy")) {
     body.accuracies =
         read_each_once<double>(*accuracy, {"a number from 0.001 to 0.5, or a list of such", 0.001, 0.5, true, true});
+    std::sort(body.accuracies.rbegin(), body.accuracies.rend());
     if (body.voxel_edges.size() + body.voxel_counts.size() != 1 || !body.cut)
       refuse(*accuracy, "starts from one lattice of cut cells", "one voxels or voxel_edge_m, and not cut = false");
   }

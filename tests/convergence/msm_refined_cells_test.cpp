@@ -134,7 +134,7 @@ Notched notched(const VoxelGrid& grid, const Mesh& body, VoxelGrid* finer = null
   if (finer) {
     EXPECT_TRUE(halve_worst_cells(cut, energies.larger(), *finer));
   }
-  return {cut.cells.size(), e.displacement.cwiseProduct(conditions.external).sum(), energies.promised_error()};
+  return {cut.cells.size(), e.displacement.cwiseProduct(conditions.external).sum(), energies.estimated_error()};
 }
 
 // The refined lattice has less than half of the error at no more cells, and says how large it is within a factor of
@@ -188,13 +188,27 @@ TEST(RefinedCells, PromiseWhatTheirSupportsGiveWay) {
     ASSERT_TRUE(e.ok) << e.message;
     const CellEnergies energies = cell_energies(built.model, e.displacement);
     const double exact = 1 * 0.4 / 100, found = e.displacement.cwiseProduct(conditions.external).sum();
-    EXPECT_NEAR(energies.promised_error(), 1 - exact / found,
+    EXPECT_NEAR(energies.estimated_error(), 1 - exact / found,
                 round == 0 ? 1e-9 : 2e-4);  // later the stress is not even
-    promised.push_back(energies.promised_error());
+    promised.push_back(energies.estimated_error());
     EXPECT_TRUE(halve_worst_cells(cut, energies.larger(), grid));
   }
   EXPECT_GT(promised[0], 0.01);
   EXPECT_LT(promised[2], 0.7 * promised[0]);
+}
+
+TEST(RefinedCells, LearnFromTheirEnergiesHowFarTheirEstimatesFallShort) {
+  const auto found = [](double kappa) {  // of a body whose energy is 5
+    std::vector<LatticeEstimate> lattices;
+    for (const double error : {0.12, 0.1, 0.07, 0.04}) lattices.push_back({error, 5 * (1 - kappa * error)});
+    return falls_short(lattices);
+  };
+  EXPECT_NEAR(found(1.7).value(), 1.7, 1e-12);
+  EXPECT_NEAR(found(-1.7).value(), 1.7, 1e-12) << "supports are moved, or give way";
+  EXPECT_EQ(found(0.3).value(), 1) << "an estimate that is too large may stay";
+  EXPECT_FALSE(falls_short({{0.12, 4}}));
+  EXPECT_FALSE(falls_short({{0.12, 4}, {0.115, 4.1}})) << "nearly the same estimate tells nothing";
+  EXPECT_FALSE(falls_short({{0.12, 4}, {0.06, 1}, {0.05, 0.01}})) << "none is left";
 }
 
 TEST(RefinedCells, FollowALargeDisplacementWithAndWithoutPressures) {
