@@ -138,17 +138,18 @@ std::string closest_text(const Candidate& best, bool alone) {
 }
 
 std::string tied_text(const std::vector<Candidate>& tied, double uncertainty) {
+  const double place = tied.front().worst().place;
   std::vector<std::string> names;
   for (const Candidate& c : tied) names.push_back(fmt::format("{} ({} %)", c.name, percent(c.error())));
   const ModelErrors& e = *tied.front().errors;
   return fmt::format(
       "Of the spring models {} come closest and cannot be told apart: their largest errors{} differ by no more than "
-      "the {} % that the reference is uncertain by, {}.",
+      "the {} % that the reference {} uncertain by, {}.",
       listed(names),
       e.reaction.empty()       ? ""
       : e.displacement.empty() ? " of reactions of moved supports"
                                : " of displacement and reactions",
-      percent(uncertainty), where_text(tied.front()));
+      percent(uncertainty + place), place > 0 ? "and the place of whole cubes are" : "is", where_text(tied.front()));
 }
 
 /// Of one model alone: how close it comes.
@@ -191,7 +192,7 @@ std::string closest_at_rest(const std::map<ModelKey, ModelErrors>& models, std::
   std::vector<Candidate> tied;
   for (const Candidate& c : all) {
     const double doubt = std::max(best.uncertainty(), c.uncertainty());
-    if (&c != &best && c.error() - best.error() > doubt) continue;
+    if (&c != &best && c.error() - best.error() > doubt + best.worst().place) continue;  // no more than luck
     tied.push_back(c);
     closest.push_back(c.name);
     uncertainty = std::max(uncertainty, doubt);

@@ -13,6 +13,7 @@ namespace springproof {
 struct Worst {
   double error = -1;       ///< against the true body, coarse cells and their shape included [1]
   double uncertainty = 0;  ///< of the reference [1]
+  double place = 0;        ///< of whole cubes: what 8-node elements in them are off, by luck of where they lie [1]
   std::string case_name;
   std::string of = "displacement";  ///< "displacement", or a reaction, "force on z_max"
 

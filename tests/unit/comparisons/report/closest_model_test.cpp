@@ -89,6 +89,20 @@ TEST(ClosestModel, WithinTheReferencesUncertaintyModelsAreNotRanked) {
             0u);
 }
 
+TEST(ClosestModel, WhatWinsInWholeCubesByTheirPlaceIsNamedWithTheNext) {
+  CaseResult rabbit = with_models("rabbit", 0.3, 0.02, {{"emsm", 0.08}, {"hybmss_avg", 0.15}, {"fem_q1", -0.06}});
+  rabbit.experiment.body.voxel_counts = {1500};
+  rabbit.runs[2].kind = "fem";
+  for (std::size_t i = 0; i < 3; ++i) rabbit.runs[i].filled = i == 1 ? 2226 : 1510;  // cut cells: more than cubes
+  EXPECT_EQ(
+      headline({rabbit}).answer,
+      "Of the spring models emsm (8 %) and hybmss_avg (15 %) come closest and cannot be told apart: their largest "
+      "errors differ by no more than the 8 % that the reference and the place of whole cubes are uncertain by, at "
+      "ν = 0.3, in 1 linear case of 1510 cells.");
+  rabbit.runs[0].filled = 2000;
+  EXPECT_EQ(headline({rabbit}).answer.find("Of the spring models emsm comes closest"), 0u) << "in cut cells";
+}
+
 TEST(ClosestModel, AReferenceUncertainByAFifthDoesNotTell) {
   const auto headline_at = [](double uncertainty, double other) {
     return headline({with_models("lobes", 0.3, uncertainty, {{"emsm", 0.05}, {"hybmss", other}})});
