@@ -185,21 +185,27 @@ ReferenceField extrapolate(const std::vector<NodalVectors>& fields, const Eigen:
   // their directions.
   const bool fall = f > 0 && c >= ratios.coarse * f;
   const Eigen::VectorXd left = safety_factor * (fall ? Eigen::VectorXd(by_last(1, ratios) * last) : spread);
-  if (doubt > 0)
+  const auto doubtful = [&](ReferenceField own) {
+    if (doubt <= own.uncertainty) return own;
+    result.displacement = u3;
+    result.observed_order.reset();
     return finest(left * std::max(1.0, doubt * size / weighted_rms(left, weights)),
                   fmt::format("not converging: most other values do not ({:.2g} %); finest grid", 100 * doubt));
+  };
   if (along < smallest_correlation)
-    return with(left, fall ? Sequence::converging : Sequence::not_converging,
-                fmt::format("{}the grids' differences point apart (correlation {:.2f}): finest grid{}",
-                            fall ? "" : "not converging: ", along, fall ? ", at first order" : ""));
+    return doubtful(with(left, fall ? Sequence::converging : Sequence::not_converging,
+                         fmt::format("{}the grids' differences point apart (correlation {:.2f}): finest grid{}",
+                                     fall ? "" : "not converging: ", along, fall ? ", at first order" : "")));
   if (!is_fast_enough(quotient, order, {}, ratios))
-    return finest(safety_factor * spread.cwiseMax(by_last(std::max(order, TrustedOrders{}.lowest), ratios) * last),
-                  "not converging fast enough: finest grid");
+    return doubtful(
+        finest(safety_factor * spread.cwiseMax(by_last(std::max(order, TrustedOrders{}.lowest), ratios) * last),
+               "not converging fast enough: finest grid"));
   const double p = std::min(order, clamped_order);
   result.displacement += by_last(p, ratios) * fine;
   result.observed_order = order;
-  return with(safety_factor * (by_last(p, ratios) * last).cwiseMax(by_first(p, ratios) * first), Sequence::converging,
-              fmt::format("{}; correlation {:.2f}", order > p ? lucky : richardson, along));
+  return doubtful(with(safety_factor * (by_last(p, ratios) * last).cwiseMax(by_first(p, ratios) * first),
+                       Sequence::converging,
+                       fmt::format("{}; correlation {:.2f}", order > p ? lucky : richardson, along)));
 }
 
 }  // namespace springproof

@@ -93,9 +93,9 @@ std::string kind_of(const std::string& measure);
 
 /// The same for a displacement field sampled at the same points on three grids, in the weighted L2 norm: the order is
 /// that of the first difference's component along the second.  It is extrapolated only if the two are correlated
-/// (smallest_correlation) and there is no `doubt` (below).  Otherwise the uncertainty is Fs times the error that first
-/// order leaves after the last difference, or, if the differences do not decrease that fast, Fs times the largest of
-/// the three distances, node by node; never less than the doubt.
+/// (smallest_correlation) and there is no `doubt` (above) larger than the uncertainty that follows.  Otherwise the
+/// uncertainty is Fs times the error that first order leaves after the last difference, or, if the differences do not
+/// decrease that fast, Fs times the largest of the three distances, node by node; never less than the doubt.
 struct ReferenceField {
   NodalVectors displacement;
   double uncertainty = 0;             ///< relative to the norm of the finest field

@@ -240,11 +240,16 @@ TEST(ReferenceField, IsExtrapolatedOnlyWhereItsDifferencesPointTheSameWay) {
 TEST(ReferenceField, DoesNotConvergeWhereTheScalarsDoNot) {
   NodalVectors limit;
   const auto fields = fields_of(1, limit);
-  const ReferenceField f = extrapolate(fields, Eigen::VectorXd::Ones(40), {}, 1e-9);
+  const ReferenceField sure = extrapolate(fields, Eigen::VectorXd::Ones(40));
+  const ReferenceField same = extrapolate(fields, Eigen::VectorXd::Ones(40), {}, 0.9 * sure.uncertainty);
+  EXPECT_EQ(same.sequence, Sequence::converging) << "doubt of less than the field itself states";
+  EXPECT_EQ(same.uncertainty, sure.uncertainty);
+  const ReferenceField f = extrapolate(fields, Eigen::VectorXd::Ones(40), {}, 1.1 * sure.uncertainty);
   EXPECT_EQ(f.displacement, fields[2]);
+  EXPECT_FALSE(f.observed_order);
   EXPECT_EQ(f.sequence, Sequence::not_converging);
   EXPECT_NEAR(f.nodal_uncertainty.minCoeff(), 1.25 * 0.25, 1e-6);  // falls at first order
-  const ReferenceField slow = extrapolate(fields_of(1, limit, 0.4), Eigen::VectorXd::Ones(40), {}, 1e-9);
+  const ReferenceField slow = extrapolate(fields_of(1, limit, 0.4), Eigen::VectorXd::Ones(40), {}, 1);
   EXPECT_GE(slow.nodal_uncertainty.minCoeff(), 1.25 * 0.4);
   const ReferenceField dubious = extrapolate(fields, Eigen::VectorXd::Ones(40), {}, 10);
   EXPECT_NEAR(dubious.uncertainty, 10, 1e-6);
