@@ -43,10 +43,10 @@ double error_of_lames_mode(int n, double nu, bool tetrahedra) {
 TEST(FemNaturalModes, OfAFreeCubeHoldLamesModes) {  // with order four, from the finest grid's error
   for (const bool tetrahedra : {false, true})
     for (const double nu : {0.0, 0.3, 0.45, 0.4999}) {
-      const double coarse = error_of_lames_mode(3, nu, tetrahedra), fine = error_of_lames_mode(6, nu, tetrahedra);
+      const double coarse = error_of_lames_mode(3, nu, tetrahedra), fine = error_of_lames_mode(5, nu, tetrahedra);
       EXPECT_LT(coarse, 5e-3) << nu << tetrahedra;
-      EXPECT_LT(fine, 5e-4) << nu << tetrahedra;
-      EXPECT_GT(coarse / fine, 8) << nu << tetrahedra;
+      EXPECT_LT(fine, 1e-3) << nu << tetrahedra;
+      EXPECT_GT(coarse / fine, std::pow(5. / 3, 3)) << nu << tetrahedra;
     }
 }
 
@@ -126,7 +126,7 @@ TEST(FemNaturalModes, OfABodyOnAPlateAreLeftThreeRigidMotions) {
 
 TEST(FemNaturalModes, OfTetrahedraAreThoseOfHexahedraAtEveryPoissonsRatio) {
   const Vec3 size(1, 1, 1);
-  for (const double nu : {0.3, 0.4, 0.45, 0.499, 0.4999}) {
+  for (const double nu : {0.3, 0.45, 0.4999}) {
     fem::GridProblem hexahedra = modes_of(size, {5, 5, 5}, 2, nu, 6), tetrahedra = hexahedra;
     tetrahedra.coarse = test::tetrahedra_of(hexahedra.coarse);
     const fem::Solution a = fem::solve_grid(hexahedra), b = fem::solve_grid(tetrahedra);
