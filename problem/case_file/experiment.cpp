@@ -280,8 +280,8 @@ std::vector<double> Experiment::settings() const {
   return values;
 }
 
-double Experiment::setting_of(const IsotropicMaterial& body) const {
-  return listed_modulus(listed.region > 0 ? regions[listed.region - 1].material : body);
+double Experiment::setting_of(const IsotropicMaterial& rest) const {
+  return listed_modulus(listed.region > 0 ? regions[listed.region - 1].material : rest);
 }
 
 Experiment Experiment::at(std::size_t setting) const {

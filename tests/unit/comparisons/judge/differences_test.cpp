@@ -32,6 +32,7 @@ const ResultsFolder results = {
     "0.1.0",
     "2026-01-01T00:00:00Z",
     {row("displacement.tip.x", 1e-12), row("displacement.tip.z", -0.25, -0.24, 1e-3), row("volume_change", -0.01)},
+    {},
     {}};
 
 TEST(Differences, OfAFolderWithItselfAreNone) {

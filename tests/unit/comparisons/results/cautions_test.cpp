@@ -7,8 +7,10 @@ namespace {
 
 TEST(Cautions, NameTheModelsWhoseStressesWereAskedForAndAreNotKnown) {
   CaseResult result;
-  result.experiment.models = {{.name = "hybmss_avg", .label = "hybmss_avg"},
-                              {.name = "emsm_random", .label = "emsm_random"}};
+  for (const char* model : {"hybmss_avg", "emsm_random"}) {
+    ModelChoice& choice = result.experiment.models.emplace_back();
+    choice.name = choice.label = model;
+  }
   result.experiment.measures = {"displacement_error", "stress_error"};
   Row row;
   row.model = "hybmss_avg";
