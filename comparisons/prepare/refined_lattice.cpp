@@ -13,6 +13,7 @@ namespace springproof {
 namespace {
 
 constexpr std::size_t most_cells = 100000;
+constexpr double untold = 4;  // what an estimate is taken to fall short by as long as no other lattice tells
 
 /// The energies of the lattice in each material of the case.
 std::vector<CellEnergies> energies_of(const PreparedCase& prepared, const CutBody& cut, const Mesh& body) {
@@ -49,23 +50,22 @@ void Refinement::solve() {
   const std::vector<CellEnergies> energies = energies_of(prepared_, cut_, body_);
   for (std::size_t m = 0; m < energies.size(); ++m) {
     by_material_[m].push_back({energies[m].estimated_error(), energies[m].elastic});
-    const std::optional<double> by = falls_short(by_material_[m]);
+    falls_short_ = std::max(falls_short_, falls_short(by_material_[m]).value_or(untold));
     if (energies[m].estimated_error() > estimated_) errors_ = energies[m].larger();
     estimated_ = std::max(estimated_, energies[m].estimated_error());
-    falls_short_ = by && falls_short_ ? std::optional(std::max(*by, *falls_short_)) : std::nullopt;
   }
 }
 
 RefinedBody Refinement::until(double accuracy) {
   if (errors_.empty()) solve();
   while (true) {
-    const bool reached = falls_short_ && *falls_short_ * estimated_ <= accuracy;
+    const bool reached = falls_short_ * estimated_ <= accuracy;
     if (reached || cut_.cells.size() > most_cells || !halve_worst_cells(cut_, errors_, grid_))
-      return {cut_, estimated_, falls_short_.value_or(1), reached};
+      return {cut_, estimated_, falls_short_, reached};
     solve();
     progress::detail([&] {
       return fmt::format("refining for {:.3g} %: {} cells promise {:.3g} %", 100 * accuracy, cut_.cells.size(),
-                         100 * falls_short_.value_or(1) * estimated_);
+                         100 * falls_short_ * estimated_);
     });
   }
 }

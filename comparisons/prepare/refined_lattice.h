@@ -1,7 +1,6 @@
 // Lattices that are refined until they promise an accuracy.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "comparisons/prepare/prepared_case.h"
@@ -12,8 +11,7 @@ namespace springproof {
 /// A body in cells of several sizes.
 struct RefinedBody {
   CutBody cut;
-  double estimated =
-      0;  ///< relative error of the displacement by the cells' own energies, the largest of the materials
+  double estimated = 0;    ///< relative error of the displacement by the cells' energies, the largest of the materials
   double falls_short = 1;  ///< by what that must be multiplied, by the elastic energies of the lattices before
   bool reached = false;    ///< the accuracy that was asked for
   double promised() const { return falls_short * estimated; }
@@ -25,9 +23,9 @@ class Refinement {
   /// @param grid the cells to begin with
   Refinement(const PreparedCase& prepared, VoxelGrid grid, const Mesh& body);
 
-  /// Goes on until the promised error (msm/measure/promised_error.h) of the first model of cut cells is known and at
-  /// most `accuracy` for each material of the case (at rest, displacements small), cells have been halved four times or
-  /// there are 100,000.
+  /// Goes on until the promised error (msm/measure/promised_error.h) of the first model of cut cells is at most
+  /// `accuracy` for each material of the case (at rest, displacements small), cells have been halved four times or
+  /// there are 100,000.  As long as no other lattice tells how far the estimate falls short, it is taken four times.
   /// @throws InputError if the loads cannot be applied, or leave a rigid motion.
   RefinedBody until(double accuracy);
 
@@ -41,7 +39,7 @@ class Refinement {
   std::vector<std::vector<LatticeEstimate>> by_material_;  // of all lattices so far
   std::vector<double> errors_;                             // of the cells, where the material's promise is the worst
   double estimated_ = 0;
-  std::optional<double> falls_short_;
+  double falls_short_ = 1;
 };
 
 }  // namespace springproof

@@ -183,7 +183,7 @@ std::optional<double> falls_short(const std::vector<LatticeEstimate>& lattices) 
     elastic += l.elastic / n;
     largest = std::max(largest, l.error);
   }
-  if (largest < least_fall * lattices.back().error) return {};
+  if (lattices.size() < 2 || largest <= least_fall * lattices.back().error) return {};
   double both = 0, square = 0;
   for (const LatticeEstimate& l : lattices) {
     both += (l.error - error) * (l.elastic - elastic);

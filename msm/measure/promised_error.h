@@ -41,7 +41,7 @@ struct LatticeEstimate {
 /// the energies are E (1 - kappa error) or, where supports are moved, E (1 + kappa error); of the straight line that is
 /// nearest to them.  Creases that a lattice does not resolve are in its energy, not in its estimate.
 /// @param lattices of the same body and loads, the finest last
-/// @return nothing unless an estimate is 1.1 times the last, nor where the line ends beyond zero
+/// @return nothing unless an estimate is more than 1.1 times the last, nor where the line ends beyond zero
 std::optional<double> falls_short(const std::vector<LatticeEstimate>& lattices);
 
 /// xx yy zz xy yz xz [Pa], one row per node.

@@ -190,7 +190,7 @@ const std::vector<Measure>& measure_table() {
     {"displacement_error_order", value, {{"displacement_error_order", "1"}},
      "observed order of the displacement error, where the exact solution is known", "observed order of the displacement error", ""},
     {"promised_error", value, {{"promised_error", "1"}}, "of cut cells: relative error of the displacement by their stresses alone",
-     "promised error", "energy of σ* − σ over that of σ, σ* the stress recovered at the nodes: what the displacement error should be"},
+     "promised error", "energy of σ* − σ over that of σ, σ* the stress recovered at the nodes, times what that falls short by on lattices before: what the displacement error should be"},
     {"section_distance", distance, {{"section_distance", "m"}}, "mean distance to FEM on the plane [section] [m]",
      "mean distance on the section", "mean |u − u_fem| over the nodes of the section"},
     {"section_axis_distance", distance, {{"section_axis_distance", "m"}}, "the same per coordinate in the plane, (|dx| + |dy|)/2 [m]",

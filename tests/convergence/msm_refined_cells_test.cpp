@@ -208,6 +208,7 @@ TEST(RefinedCells, LearnFromTheirEnergiesHowFarTheirEstimatesFallShort) {
   EXPECT_EQ(found(0.3).value(), 1) << "an estimate that is too large may stay";
   EXPECT_FALSE(falls_short({{0.12, 4}}));
   EXPECT_FALSE(falls_short({{0.12, 4}, {0.115, 4.1}})) << "nearly the same estimate tells nothing";
+  EXPECT_FALSE(falls_short({{0, 4}, {0, 4}})) << "no error";
   EXPECT_FALSE(falls_short({{0.12, 4}, {0.06, 1}, {0.05, 0.01}})) << "none is left";
 }
 

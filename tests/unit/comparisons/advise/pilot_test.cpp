@@ -40,7 +40,7 @@ models = ["hybmss_avg"]
   EXPECT_FALSE(pilot.models[2].step) << "whole cubes step as blocks do";
   const PilotModel& refined = pilot.models[3];
   EXPECT_EQ(refined.label, "hybmss_avg accuracy");
-  ASSERT_EQ(refined.cells.size(), 2U) << refined.failure;
+  ASSERT_GE(refined.cells.size(), 2U) << refined.failure;
   EXPECT_LT(refined.promised[1], refined.promised[0]);
   EXPECT_LT(refined.errors[1], refined.errors[0]);
   EXPECT_LT(refined.errors[1], refined.promised[1]);
