@@ -156,7 +156,7 @@ double doubt_of(const std::map<std::string, ReferenceValue>& limits) {
 }
 
 ReferenceField extrapolate(const std::vector<NodalVectors>& fields, const Eigen::VectorXd& weights,
-                           const GridRatios& ratios, double doubt) {
+                           const GridRatios& ratios, double doubt, const TrustedOrders& orders) {
   if (fields.size() < 3) throw std::invalid_argument("an uncertainty needs three grids");
   const NodalVectors &u1 = fields[fields.size() - 3], &u2 = fields[fields.size() - 2], &u3 = fields.back();
   const NodalVectors coarse = u2 - u1, fine = u3 - u2;
@@ -196,14 +196,13 @@ ReferenceField extrapolate(const std::vector<NodalVectors>& fields, const Eigen:
     return doubtful(with(left, fall ? Sequence::converging : Sequence::not_converging,
                          fmt::format("{}the grids' differences point apart (correlation {:.2f}): finest grid{}",
                                      fall ? "" : "not converging: ", along, fall ? ", at first order" : "")));
-  if (!is_fast_enough(quotient, order, {}, ratios))
-    return doubtful(
-        finest(safety_factor * spread.cwiseMax(by_last(std::max(order, TrustedOrders{}.lowest), ratios) * last),
-               "not converging fast enough: finest grid"));
-  const double p = std::min(order, clamped_order);
+  if (!is_fast_enough(quotient, order, orders, ratios))
+    return doubtful(finest(safety_factor * spread.cwiseMax(by_last(std::max(order, orders.lowest), ratios) * last),
+                           "not converging fast enough: finest grid"));
+  const double p = std::min(order, orders.highest), of_first = std::min(order, orders.first);
   result.displacement += by_last(p, ratios) * fine;
   result.observed_order = order;
-  return doubtful(with(safety_factor * (by_last(p, ratios) * last).cwiseMax(by_first(p, ratios) * first),
+  return doubtful(with(safety_factor * (by_last(p, ratios) * last).cwiseMax(by_first(of_first, ratios) * first),
                        Sequence::converging,
                        fmt::format("{}; correlation {:.2f}", order > p ? lucky : richardson, along)));
 }

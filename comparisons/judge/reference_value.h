@@ -106,7 +106,7 @@ struct ReferenceField {
   std::optional<double> correlation;  ///< of u2 - u1 and u3 - u2, from -1 to 1; empty: one of them is round-off
 };
 ReferenceField extrapolate(const std::vector<NodalVectors>& fields, const Eigen::VectorXd& weights,
-                           const GridRatios& ratios = {}, double doubt = 0);
+                           const GridRatios& ratios = {}, double doubt = 0, const TrustedOrders& orders = {});
 
 /// Weighted L2 norm of a nodal field: sqrt(sum w |u|^2 / sum w).
 double weighted_norm(const NodalVectors& u, const Eigen::VectorXd& weights);

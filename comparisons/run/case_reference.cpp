@@ -104,8 +104,9 @@ void record_elements(PartRun& run) {
 Reference reference_at(const PartRun& run, const Lattice& lattice, const std::vector<NodalVectors>& fields,
                        const std::map<std::string, ReferenceValue>& scalars) {
   const double share = scale_of_errors(run.prepared, lattice, fields.back()).share;
-  ReferenceField field = extrapolate(fields, nodal_volumes(*lattice.mesh), ratios_of(run.grids.elements.front()),
-                                     share * doubt_of(scalars));
+  const ElementGrids& e = run.grids.elements.front();
+  ReferenceField field = extrapolate(fields, nodal_volumes(*lattice.mesh), ratios_of(e), share * doubt_of(scalars),
+                                     trusted_orders("displacement", e.element, run.experiment().reference.smooth));
   widen(share * run.prepared.body.load_spread, field);
   field.uncertainty /= share;
   const DisplacementScale scale = scale_of_errors(run.prepared, lattice, field.displacement);

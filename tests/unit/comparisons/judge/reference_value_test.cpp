@@ -237,6 +237,19 @@ TEST(ReferenceField, IsExtrapolatedOnlyWhereItsDifferencesPointTheSameWay) {
   EXPECT_GT(askew.uncertainty, f.uncertainty);
 }
 
+TEST(ReferenceField, OfQuadraticElementsMayFallWithTheirOwnOrderAndNotSlowerThanTheFirst) {
+  NodalVectors limit;
+  const Eigen::VectorXd weights = Eigen::VectorXd::Ones(40);
+  const TrustedOrders quadratic = trusted_orders("displacement", "p2", false);
+  const auto fast = fields_of(1, limit, 2), slow = fields_of(1, limit, 0.4);  // orders 3 and 0.7
+  EXPECT_NEAR(extrapolate(fast, weights).nodal_uncertainty.minCoeff(), 1.25 * 2 / 12, 1e-6);
+  EXPECT_NEAR(extrapolate(fast, weights, {}, 0, quadratic).nodal_uncertainty.minCoeff(), 1.25 * 0.25 / 3, 1e-6);
+  EXPECT_EQ(extrapolate(slow, weights).sequence, Sequence::converging);
+  const ReferenceField own = extrapolate(slow, weights, {}, 0, quadratic);
+  EXPECT_EQ(own.sequence, Sequence::not_converging);
+  EXPECT_NEAR(own.nodal_uncertainty.minCoeff(), 1.25 * 0.65, 1e-6);
+}
+
 TEST(ReferenceField, DoesNotConvergeWhereTheScalarsDoNot) {
   NodalVectors limit;
   const auto fields = fields_of(1, limit);
