@@ -95,7 +95,8 @@ std::string kind_of(const std::string& measure);
 /// that of the first difference's component along the second.  It is extrapolated only if the two are correlated
 /// (smallest_correlation) and there is no `doubt` (above) larger than the uncertainty that follows.  Otherwise the
 /// uncertainty is Fs times the error that first order leaves after the last difference, or, if the differences do not
-/// decrease that fast, Fs times the largest of the three distances, node by node; never less than the doubt.
+/// decrease that fast, Fs times the largest of the three distances, node by node; never less than the doubt.  `orders`:
+/// as of a displacement at a point (trusted_orders).
 struct ReferenceField {
   NodalVectors displacement;
   double uncertainty = 0;             ///< relative to the norm of the finest field

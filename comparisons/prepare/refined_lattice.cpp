@@ -49,10 +49,11 @@ void Refinement::solve() {
   falls_short_ = 1;
   const std::vector<CellEnergies> energies = energies_of(prepared_, cut_, body_);
   for (std::size_t m = 0; m < energies.size(); ++m) {
-    by_material_[m].push_back({energies[m].estimated_error(), energies[m].elastic});
+    const double error = energies[m].estimated_error();
+    by_material_[m].push_back({error, energies[m].elastic});
     falls_short_ = std::max(falls_short_, falls_short(by_material_[m]).value_or(untold));
-    if (energies[m].estimated_error() > estimated_) errors_ = energies[m].larger();
-    estimated_ = std::max(estimated_, energies[m].estimated_error());
+    if (error > estimated_) errors_ = energies[m].larger();
+    estimated_ = std::max(estimated_, error);
   }
 }
 

@@ -182,7 +182,7 @@ struct Experiment {
   /// Values of the listed modulus, each once, in the file's order; records and files of results name it poisson_ratio.
   std::vector<double> settings() const;
   /// Its value for a material of what is in no region, in a case with one material of each region.
-  double setting_of(const IsotropicMaterial& body) const;
+  double setting_of(const IsotropicMaterial& rest) const;
   /// The case with one material of each region: the list's of this number, counted as settings() are.
   Experiment at(std::size_t setting) const;
   /// Of a region, by its number, or of what is in none (0), all materials of the list if it has one.

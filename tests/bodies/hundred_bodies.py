@@ -9,8 +9,9 @@ new` prints, and compares it at two resolutions and four Poisson's ratios.  Of e
 solved once more with edges of half the length.  A body whose result.json is there is not run again.  Prints a table by
 kind.  A reference converges if an order is seen, or its meshes are as good as equal, at every ratio; it tells the
 springs' error if its uncertainty is the smaller of the two, at every ratio and the finer lattice.  Fails if a body is
-refused without the right reason or has no result at some ratio, if a smaller share of a reference's displacements, in the
-mean over the bodies, lies within its uncertainty than is said of it (INSIDE), or if fewer references than --least tell the error.
+refused without the right reason or has no result at some ratio, if a smaller share of a reference's displacements, in
+the mean over the bodies, lies within its uncertainty than is said of it (INSIDE), or if fewer references than --least
+tell the error.
 """
 
 import argparse
