@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "fem_reference/solve_grid.h"
-#include "problem/files/named_files.h"
-#include "problem/processes/in_child.h"
+#include "problem/files/files.h"
+#include "problem/processes/child.h"
 #include "problem/system/streams.h"
 
 namespace springproof::fem {

@@ -1,14 +1,10 @@
 #include "problem/attached_mass.h"
 
 namespace springproof {
-namespace {
-
-constexpr int points_of_a_segment = 16;  // each in the middle of its part
-
-}  // namespace
 
 std::vector<Vec3> points_of(const AttachedMass& mass) {
   if (mass.at.size() < 2) return mass.at;
+  constexpr int points_of_a_segment = 16;  // each in the middle of its part
   std::vector<Vec3> points;
   for (int i = 0; i < points_of_a_segment; ++i)
     points.push_back(mass.at[0] + (i + 0.5) / points_of_a_segment * (mass.at[1] - mass.at[0]));

@@ -10,6 +10,10 @@
 
 namespace springproof {
 
+/// The longest side of any body [m].  Products of a few lengths, moduli and densities then stay finite, and springs
+/// files can be read again; 1e9 is also the largest coordinate.
+inline constexpr double smallest_body = 1e-6, largest_body = 1e9;
+
 /// Endings of the files that a body can be, in small letters: a script's ".geo" first.
 const std::vector<std::string>& body_file_endings();
 

@@ -10,7 +10,7 @@
 #include "comparisons/run/prepare.h"
 #include "comparisons/sweep/find_cases.h"
 #include "comparisons/sweep/status.h"
-#include "problem/files/named_files.h"
+#include "problem/files/files.h"
 #include "problem/processes/child.h"
 #include "problem/processes/interrupts.h"
 #include "problem/system/input_error.h"

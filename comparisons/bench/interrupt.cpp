@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include "problem/processes/child.h"
-#include "problem/processes/in_child.h"
 
 namespace springproof::bench {
 namespace {

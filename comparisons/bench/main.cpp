@@ -8,7 +8,7 @@
 #include "comparisons/bench/benches.h"
 #include "comparisons/bench/interrupt.h"
 #include "msm/kernels/instruction_set.h"
-#include "problem/files/named_files.h"
+#include "problem/files/files.h"
 #include "problem/system/input_error.h"
 #include "problem/system/streams.h"
 

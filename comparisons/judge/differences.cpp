@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "comparisons/judge/reference_value.h"
-#include "problem/files/named_files.h"
+#include "problem/files/files.h"
 #include "problem/system/input_error.h"
 #include "problem/system/json.h"
 

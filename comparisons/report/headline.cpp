@@ -11,7 +11,6 @@
 #include "comparisons/report/headline_cases.h"
 #include "comparisons/report/stability_words.h"
 #include "comparisons/report/words.h"
-#include "problem/case_file/external.h"
 
 namespace springproof {
 namespace {

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// File format: this heading (problem/files/checked_file.h), then the key and the answer of the mesher.
+// File format: this heading (problem/files/new_file.h), then the key and the answer of the mesher.
 const KeptKind kept_mesh = {"mesh", ".cbor", "springproof mesh 1 "};
 
 }  // namespace

@@ -15,8 +15,7 @@
 
 #include "meshes/mesher/mesh_cache.h"
 #include "meshes/mesher/mesher_exchange.h"
-#include "problem/body_size.h"
-#include "problem/files/named_files.h"
+#include "problem/files/files.h"
 #include "problem/processes/child.h"
 #include "problem/system/progress.h"
 #include "problem/system/streams.h"

@@ -6,7 +6,7 @@
 
 #include <sstream>
 
-#include "problem/files/named_files.h"
+#include "problem/files/files.h"
 #include "problem/system/input_error.h"
 
 namespace springproof {

@@ -1,6 +1,6 @@
 // Apart from the parser, which also runs in a browser.
 #include "meshes/surface/stl.h"
-#include "problem/files/named_files.h"
+#include "problem/files/files.h"
 
 namespace springproof {
 

@@ -14,7 +14,7 @@
 #include "msm/exchange/springs_document.h"
 #include "msm/laws/capabilities.h"
 #include "msm/laws/nodal_gradients.h"
-#include "problem/files/named_files.h"
+#include "problem/files/files.h"
 #include "problem/system/input_error.h"
 #include "problem/system/shortened.h"
 

@@ -6,7 +6,7 @@
 #include "meshes/vtu.h"
 #include "msm/exchange/npz.h"
 #include "msm/exchange/springs_document.h"
-#include "problem/files/named_files.h"
+#include "problem/files/files.h"
 #include "problem/system/input_error.h"
 
 namespace springproof {

@@ -12,7 +12,7 @@
 #include "meshes/voxels/voxelise.h"
 #include "msm/python/bindings.h"
 #include "problem/body.h"
-#include "problem/files/named_files.h"
+#include "problem/files/files.h"
 
 namespace springproof::python {
 namespace {

@@ -4,9 +4,8 @@
 
 #include <algorithm>
 
-#include "problem/body_size.h"
 #include "problem/case_file/experiment_parts.h"
-#include "problem/files/named_files.h"
+#include "problem/files/files.h"
 #include "problem/large_strain.h"
 #include "problem/system/nearest_name.h"
 
@@ -19,17 +18,13 @@ std::vector<std::string> kinematics_names() {
   return names;
 }
 
-[[noreturn]] void missing(const TomlValue& table, const std::string& key, const std::string& allowed) {
-  refuse({table.node, table.key + "." + key_in(table.units, key).name, table.file, table.units}, "is missing", allowed);
-}
-
 std::vector<Cells> read_resolutions(const TomlValue& cells) {
   const auto items = as_list(cells, "[nx, ny, nz] or a list of such, integers from 1 to 1000");
   if (!items.front().node->is_array()) return {as_cells(cells)};
   std::vector<Cells> resolutions;
   for (const TomlValue& item : items) {
     const Cells resolution = as_cells(item);
-    if (std::find(resolutions.begin(), resolutions.end(), resolution) != resolutions.end())
+    if (std::ranges::find(resolutions, resolution) != resolutions.end())
       refuse(item, fmt::format("[{}] is named twice", fmt::join(resolution, ", ")), "each resolution once");
     resolutions.push_back(resolution);
   }
@@ -43,7 +38,7 @@ std::vector<T> read_each_once(const TomlValue& value, const Range& range) {
     const double given = as_number(item, range);
     const T number = static_cast<T>(given);
     if (number != given) refuse(item, fmt::format("is {}", given), range.words);
-    if (std::find(numbers.begin(), numbers.end(), number) != numbers.end())
+    if (std::ranges::find(numbers, number) != numbers.end())
       refuse(item, fmt::format("{} is named twice", number), "each once");
     numbers.push_back(number);
   }
@@ -117,11 +112,7 @@ std::vector<Probe> read_probes(const TomlTable& document) {
   std::vector<Probe> probes;
   for (const TomlValue& value : document.tables("probe")) {
     const TomlTable table(value, keys_of("probe"));
-    const Probe probe{as_text(table.at("name")), as_vector(table.at("at_m"))};
-    for (const Probe& other : probes)
-      if (other.name == probe.name)
-        refuse(table.at("name"), fmt::format("'{}' is the name of another probe", probe.name), "a name of its own");
-    probes.push_back(probe);
+    probes.push_back({read_own_name(table.at("name"), probes, " probe"), as_vector(table.at("at_m"))});
   }
   return probes;
 }
@@ -155,7 +146,7 @@ ReferenceChoice read_reference(const TomlValue& value, bool voxels) {
   }
   if (const auto times = table.find("refine")) {
     reference.refine = as_number(*times, {"a number from 1 to 10", 1, 10, true, true});
-    if (std::count(reference.elements.begin(), reference.elements.end(), "p2") == 0)
+    if (std::ranges::count(reference.elements, "p2") == 0)
       refuse(*times, "cuts tetrahedra of second order", "\"p2\" among the elements, or no such key");
   }
   if (const auto grading = table.find("grading"))
@@ -175,8 +166,8 @@ void leave_out_equilibria(const TomlTable& document, Experiment& experiment) {
 
 /// Gravity requires a density.
 void require_density(const TomlTable& document, const Experiment& experiment) {
-  const bool weighs = std::any_of(experiment.loads.begin(), experiment.loads.end(),
-                                  [](const Load& load) { return std::holds_alternative<Gravity>(load); });
+  const bool weighs =
+      std::ranges::any_of(experiment.loads, [](const Load& load) { return std::holds_alternative<Gravity>(load); });
   if (weighs && !TomlTable(document.at("material"), keys_of("material")).find("density_kg_m3"))
     missing(document.at("material"), "density_kg_m3", "a finite number > 0, since a load is gravity_m_s2");
 }
@@ -243,7 +234,7 @@ std::vector<std::string> read_elements(const TomlValue& value, const std::vector
   std::vector<std::string> elements;
   for (const TomlValue& item : as_list(value, "a list of elements: q1, q2, p1, p2")) {
     const std::string element = as_choice(item, allowed);
-    if (std::find(elements.begin(), elements.end(), element) != elements.end())
+    if (std::ranges::find(elements, element) != elements.end())
       refuse(item, fmt::format("'{}' is named twice", element), "each element once");
     elements.push_back(element);
   }
@@ -251,22 +242,6 @@ std::vector<std::string> read_elements(const TomlValue& value, const std::vector
 }
 
 std::vector<std::string> element_names() { return {"q1", "q2", "p1", "p2"}; }
-
-std::string to_string(Source source) {
-  switch (source) {
-    case Source::analytic:
-      return "analytic";
-    case Source::extrapolated_fem:
-      return "extrapolated FEM";
-    case Source::published:
-      return "published";
-    case Source::measured:
-      return "measured";
-    case Source::regression:
-      return "regression";
-  }
-  return "unknown";
-}
 
 IsotropicMaterial Experiment::at_rest(const IsotropicMaterial& material) const {
   const double creep = relaxation.creep_after(loaded_for);
@@ -349,17 +324,16 @@ Experiment read_experiment(const std::filesystem::path& file) {
 
 void check_patches(const Experiment& experiment, const std::vector<std::string>& patches) {
   for (const AttachedMass& mass : experiment.masses)
-    if (!mass.on.empty() && std::find(patches.begin(), patches.end(), mass.on) == patches.end())
+    if (!mass.on.empty() && std::ranges::find(patches, mass.on) == patches.end())
       throw InputError({experiment.file.string(), 0, 0},
                        fmt::format("mass '{}': on: the body has no patch '{}' (allowed: {}){}", mass.name, mass.on,
                                    fmt::join(patches, ", "), did_you_mean(mass.on, patches)));
   for (std::size_t i = 0; i < experiment.loads.size(); ++i) {
     const std::string* on = patch_of(experiment.loads[i]);
-    if (!on || std::find(patches.begin(), patches.end(), *on) != patches.end()) continue;
-    const SourceLocation where = i < experiment.load_locations.size() ? experiment.load_locations[i]
-                                                                      : SourceLocation{experiment.file.string(), 0, 0};
-    throw InputError(where, fmt::format("load.on: the body has no patch '{}' (allowed: {}){}", *on,
-                                        fmt::join(patches, ", "), did_you_mean(*on, patches)));
+    if (!on || std::ranges::find(patches, *on) != patches.end()) continue;
+    throw InputError(experiment.load_locations[i],
+                     fmt::format("load.on: the body has no patch '{}' (allowed: {}){}", *on, fmt::join(patches, ", "),
+                                 did_you_mean(*on, patches)));
   }
 }
 

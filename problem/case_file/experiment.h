@@ -1,6 +1,7 @@
 // An experiment: body, material, loads, models, measures, published values, tolerances.  Read from TOML.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <limits>
@@ -15,7 +16,6 @@
 #include "problem/fracture.h"
 #include "problem/loads.h"
 #include "problem/material.h"
-#include "problem/measured.h"
 #include "problem/model_choice.h"
 #include "problem/patch_rule.h"
 #include "problem/plane.h"
@@ -62,15 +62,12 @@ struct ReferenceChoice {
 /// Elements of the reference: hexahedra "q1", "q2", tetrahedra "p1", "p2".
 std::vector<std::string> element_names();
 
-/// Integrators of [dynamics]: "explicit", semi-implicit Euler, Golec et al. (2019), sec. 3 and 6.1; the implicit
-/// "energy_momentum", "implicit_euler"; "auto".
-std::vector<std::string> integrator_names();
-
 /// Motion in time of the models ([dynamics]).
 struct MotionChoice {
-  std::string integrator = "explicit";
-  bool released = false;  ///< start = "equilibrium": under the loads, which are then removed
-  double duration = 0;    ///< [s]
+  std::string integrator = "explicit";  ///< semi-implicit Euler, Golec et al. (2019), sec. 3 and 6.1; the implicit
+                                        ///< "energy_momentum", "implicit_euler"; "auto"
+  bool released = false;                ///< start = "equilibrium": under the loads, which are then removed
+  double duration = 0;                  ///< [s]
   std::optional<double>
       time_step;                 ///< [s]; empty: 0.95 of the bound of each model, implicit: a sample's, up to 10 of it
   double damping = 0;            ///< mass-proportional [1/s]
@@ -120,6 +117,21 @@ struct PublishedValue {
   SourceLocation location;
 };
 
+/// Name of an entry of [[external]], displacements of another program, among Experiment::models: one for each file, so
+/// of several Poisson's ratios several of one label.  Its file holds points and displacements (docs/engines.md);
+/// options: "poisson_ratio", whose solid they are of; "scale", which turns the file's lengths into metres; "up_axis",
+/// "y" or "z"; "force.PATCH.x", "..y", "..z": reactions [N]; "springs", false where they are no spring model's.
+inline constexpr const char* external_model = "external displacements";
+
+inline bool is_external(const ModelChoice& choice) { return choice.name == external_model; }
+
+/// Whether the entry is a spring model of the user's own, to be named and ranked as one; false: finite elements or an
+/// engine, brought for comparison only (springs = false).
+inline bool is_own_model(const ModelChoice& choice) {
+  const auto springs = choice.options.find("springs");
+  return is_external(choice) && (springs == choice.options.end() || std::get<bool>(springs->second));
+}
+
 /// Follows the label of a model of cut cells in the name of its limit from two lattices.
 inline constexpr const char* extrapolated_suffix = " extrapolated";
 
@@ -128,6 +140,42 @@ struct ListedModuli {
   std::size_t region = 0;                    ///< its number; 0: what is in no region, by its Poisson's ratio
   bool stiffness = false;                    ///< by Young's modulus [Pa]; false: by Poisson's ratio
   std::vector<IsotropicMaterial> materials;  ///< of the region, in the file's order
+};
+
+/// A measured value.
+struct MeasuredValue {
+  std::string name;
+  std::string quantity;     ///< a row of results: "mean_displacement.x_max.z", "frequency.z"
+  Vec3 arm = Vec3::Zero();  ///< of a mean_displacement: from the middle of the patch to what was followed, which turns
+                            ///< with the patch [m]
+  std::size_t of = 0;       ///< number of its load case
+  std::optional<std::size_t> minus = {};  ///< of the load case whose value is subtracted
+  double value = 0, u = 0;   ///< with its standard uncertainty, in the unit of the quantity; NaN: not measured yet
+  bool fitted = false;       ///< an input was fitted to it: it is no prediction
+  std::string history = {};  ///< that it is a sample of; empty: none
+  double time = 0;           ///< of the sample [s]
+  std::string source = {}, licence = {};
+  SourceLocation where = {};  ///< of its quantity
+};
+
+/// An input of a simulation that is not known exactly.
+struct UncertainInput {
+  enum class Kind {
+    uncertain,   ///< by a standard uncertainty
+    fitted,      ///< fitted to the measured value that says so
+    alternative  ///< as good a choice, such as another law
+  };
+  std::string name;
+  Kind kind = Kind::uncertain;
+  SourceLocation where;
+};
+
+/// The case under other loads, or after another time under them; the first is the case as written.
+struct LoadCase {
+  std::string name;
+  SourceLocation where;
+  std::size_t table = 0;                  ///< number of its [[load_case]]
+  std::optional<double> loaded_for = {};  ///< instead of the time of the case [s]
 };
 
 /// A case: one body, its loads, the materials and models it is run with, and the expected results.
@@ -152,7 +200,7 @@ struct Experiment {
   std::vector<AttachedMass> masses;            ///< beside the body's own
   std::vector<SourceLocation> mass_locations;  ///< of each
   std::size_t weights = 0;                     ///< loads, the last of `loads`, that are the weight of `masses`
-  std::vector<SourceLocation> load_locations;  ///< of the [[load]] that each of `loads` came from; may be empty
+  std::vector<SourceLocation> load_locations;  ///< of the [[load]] that each of `loads` came from
   std::vector<ModelChoice> models;             ///< empty: the reference alone is verified
   std::vector<std::string> elements = {"q1"};  ///< finite elements compared beside the models, at the same resolutions
   double max_unknowns = 0;  ///< models and elements with more than about this many unknowns are not run; 0: no limit
@@ -177,6 +225,7 @@ struct Experiment {
   std::vector<std::string> left_out;             ///< what was measured too, and is not compared
   std::string text;                              ///< the file as read
 
+  bool asks_for(const std::string& measure) const { return std::ranges::count(measures, measure) > 0; }
   /// @return the solid of equilibria: a material of the case, relaxed for `loaded_for`
   IsotropicMaterial at_rest(const IsotropicMaterial& material) const;
   /// Values of the listed modulus, each once, in the file's order; records and files of results name it poisson_ratio.

@@ -48,8 +48,7 @@ bool is_plane_strain(const std::vector<Load>& loads, int axis) {
 
 /// Lower bound of the memory [byte] of the finest grid: matrix-free quadratic elements take 450 bytes per unknown.
 double memory_for(const Cells& cells, const std::vector<std::string>& elements) {
-  const bool quadratic =
-      std::any_of(elements.begin(), elements.end(), [](const std::string& e) { return e.ends_with('2'); });
+  const bool quadratic = std::ranges::any_of(elements, [](const std::string& e) { return e.ends_with('2'); });
   double unknowns = 3;
   for (const int n : cells) unknowns *= (quadratic ? 2.0 : 1.0) * n + 1;
   return 450 * unknowns;

@@ -13,7 +13,7 @@ namespace {
 bool is_fem(const std::string& model) {
   const auto elements = element_names();
   return model == "fem" ||
-         (model.starts_with("fem_") && std::find(elements.begin(), elements.end(), model.substr(4)) != elements.end());
+         (model.starts_with("fem_") && std::ranges::find(elements, model.substr(4)) != elements.end());
 }
 
 /// Names of the finite element results of a case.
@@ -21,7 +21,7 @@ std::vector<std::string> fem_names(const Experiment& experiment) {
   std::vector<std::string> names = {"fem"};
   const auto add = [&](const std::vector<std::string>& elements) {
     for (const std::string& element : elements)
-      if (const std::string name = "fem_" + element; std::find(names.begin(), names.end(), name) == names.end())
+      if (const std::string name = "fem_" + element; std::ranges::find(names, name) == names.end())
         names.push_back(name);
   };
   if (!experiment.models.empty()) add(experiment.elements);
@@ -29,6 +29,7 @@ std::vector<std::string> fem_names(const Experiment& experiment) {
   return names;
 }
 
+const std::vector<std::string> source_names = {"analytic", "extrapolated FEM", "published", "measured", "regression"};
 const std::vector<std::string> default_measures = {"displacement_error", "volume_change", "reaction"};
 
 std::string label_of(const ModelChoice& choice) {
@@ -101,40 +102,39 @@ std::vector<ModelChoice> read_models(const TomlValue& value, const TomlTable& do
   return models;
 }
 
+/// Refuses a measure without what it needs.
+void refuse_without(const TomlValue& item, const std::string& measure, const Experiment& e) {
+  const bool large = e.model_kinematics() != Kinematics::linear,
+             of_drying = measure == "fracture" || measure == "network";
+  // clang-format off
+  const struct { bool is_this, lacks; const char *what, *allowed; } needs[] = {
+    {measure.starts_with("section_"), !e.section, "needs a plane", "with a [section] in the file"},
+    {measure == "probe" || measure == "stress", e.probes.empty(), "needs points", "with at least one [[probe]] in the file"},
+    {measure.starts_with("stress_"), large, "is of small strain", "with kinematics = \"linear\""},
+    {measure == "displacement_error_order", e.exact.empty(), "needs the solution", "with exact = \"...\" in [compare]"},
+    {measure == "reaction_error", moved_patches(e).empty(), "needs a support that is moved", "with a displacement or rotation other than zero"},
+    {measure == "fracture", !e.fracture, "needs a body that dries", "with a [fracture] in the file"},
+    {!of_drying, e.fracture.has_value(), "is not measured where a body dries", "fracture, network"},
+    {measure == "motion", !e.dynamics, "needs one", "with [dynamics] in the file"},
+    {measure == "motion_error", !e.reference.in_time, "needs finite elements in time", "with in_time = true in [reference]"},
+    {measure == "line", !e.line, "needs one", "with a [line] in the file"},
+    {measure == "moduli", !elongation_along_x(e), "needs a block stretched along x", "with a load that prescribes x on x_min and another on x_max"},
+  };
+  // clang-format on
+  for (const auto& need : needs)
+    if (need.is_this && need.lacks) refuse(item, fmt::format("'{}' {}", measure, need.what), need.allowed);
+}
+
 std::vector<std::string> read_measures(const TomlValue& value, const Experiment& experiment) {
   std::vector<std::string> measures;
   for (const TomlValue& item : as_list(value, "a list of measures")) {
     const std::string measure = as_choice(item, measure_names());
-    if (std::find(measures.begin(), measures.end(), measure) != measures.end())
+    if (std::ranges::find(measures, measure) != measures.end())
       refuse(item, fmt::format("'{}' is named twice", measure), "each measure once");
-    if (measure.starts_with("section_") && !experiment.section)
-      refuse(item, fmt::format("'{}' needs a plane", measure), "with a [section] in the file");
-    if ((measure == "probe" || measure == "stress") && experiment.probes.empty())
-      refuse(item, fmt::format("'{}' needs points", measure), "with at least one [[probe]] in the file");
-    if (measure.starts_with("stress_") && experiment.model_kinematics() != Kinematics::linear)
-      refuse(item, fmt::format("'{}' is of small strain", measure), "with kinematics = \"linear\"");
-    if (measure == "displacement_error_order" && experiment.exact.empty())
-      refuse(item, "'displacement_error_order' needs the solution", "with exact = \"...\" in [compare]");
-    if (measure == "reaction_error" && moved_patches(experiment).empty())
-      refuse(item, "'reaction_error' needs a support that is moved", "with a displacement or rotation other than zero");
-    if (measure == "fracture" && !experiment.fracture)
-      refuse(item, "'fracture' needs a body that dries", "with a [fracture] in the file");
-    if (experiment.fracture && measure != "fracture" && measure != "network")
-      refuse(item, fmt::format("'{}' is not measured where a body dries", measure), "fracture, network");
-    if (measure == "motion" && !experiment.dynamics) refuse(item, "'motion' needs one", "with [dynamics] in the file");
-    if (measure == "motion_error" && !experiment.reference.in_time)
-      refuse(item, "'motion_error' needs finite elements in time", "with in_time = true in [reference]");
-    if (measure == "line" && !experiment.line) refuse(item, "'line' needs one", "with a [line] in the file");
-    if (measure == "moduli" && !elongation_along_x(experiment))
-      refuse(item, "'moduli' needs a block stretched along x",
-             "with a load that prescribes x on x_min and another on x_max");
+    refuse_without(item, measure, experiment);
     measures.push_back(measure);
   }
   return measures;
-}
-
-bool asks_for(const Experiment& experiment, const std::string& measure) {
-  return std::find(experiment.measures.begin(), experiment.measures.end(), measure) != experiment.measures.end();
 }
 
 /// Whether it is a row of a measure of patches.  Whether the body has its patch is known only once it is meshed.
@@ -143,14 +143,14 @@ bool is_of_patch(const std::string& row) {
   const bool turn = row.starts_with("turn.");
   const auto components = {".x", ".y", ".z", ".magnitude"};
   return !patch.empty() && !(turn && row.ends_with(".magnitude")) &&
-         std::any_of(components.begin(), components.end(), [&](const char* c) { return row.ends_with(patch + c); });
+         std::ranges::any_of(components, [&](const char* c) { return row.ends_with(patch + c); });
 }
 
 }  // namespace
 
 std::string read_row_name(const TomlValue& value, const Experiment& experiment) {
   if (const auto* text = value.node->as_string(); text && is_of_patch(text->get()))
-    if (asks_for(experiment, measure_of(text->get())->name)) return text->get();
+    if (experiment.asks_for(measure_of(text->get())->name)) return text->get();
   std::vector<std::string> rows;
   for (const std::string& measure : experiment.measures)
     for (const std::string& row : rows_of_measure(measure, experiment)) rows.push_back(row);
@@ -178,20 +178,11 @@ Cells read_row_cells(const TomlValue& value, const std::string& model, const Exp
   const Cells cells = as_cells(value);
   const auto& known = experiment.body.cells;
   const bool not_known_yet = experiment.body.is_voxels();
-  if (is_fem(model) || not_known_yet || std::find(known.begin(), known.end(), cells) != known.end()) return cells;
+  if (is_fem(model) || not_known_yet || std::ranges::find(known, cells) != known.end()) return cells;
   std::vector<std::string> allowed;
   for (const Cells& c : known) allowed.push_back(fmt::format("[{}]", fmt::join(c, ", ")));
   refuse(value, fmt::format("[{}] is not in the case", fmt::join(cells, ", ")),
          fmt::format("{}", fmt::join(allowed, ", ")));
-}
-
-Source read_source(const TomlValue& value) {
-  const std::vector<Source> sources = {Source::analytic, Source::extrapolated_fem, Source::published, Source::measured,
-                                       Source::regression};
-  std::vector<std::string> names;
-  for (const Source source : sources) names.push_back(to_string(source));
-  const std::string name = as_choice(value, names);
-  return sources[std::find(names.begin(), names.end(), name) - names.begin()];
 }
 
 void read_bound(const TomlTable& table, const TomlValue& bound, Expectation& expect) {
@@ -220,7 +211,7 @@ Expectation read_expectation(const TomlValue& value, const Experiment& experimen
   if (const auto nu = table.find("poisson_ratio")) expect.poisson_ratio = read_poisson_ratio(*nu, experiment);
   if (const auto cells = table.find("cells")) expect.cells = read_row_cells(*cells, expect.model, experiment);
   expect.measure = read_row_name(table.at("measure"), experiment);
-  expect.source = read_source(table.at("source"));
+  expect.source = static_cast<Source>(as_choice_number(table.at("source"), source_names));
   if (expect.measure.starts_with("measured.") && expect.model != experiment.models.front().label)
     refuse(table.at("model"), fmt::format("'{}' is not judged by what was measured", expect.model),
            fmt::format("the first model, {}", experiment.models.front().label));
@@ -233,8 +224,7 @@ Expectation read_expectation(const TomlValue& value, const Experiment& experimen
   } else {
     if (const auto number = table.find("value")) expect.value = as_number_of(expect.measure, *number);
     if (!expect.value && expect.source != Source::extrapolated_fem)
-      refuse({value.node, value.key + ".value", value.file}, "is missing",
-             "a finite number; only source = \"extrapolated FEM\" goes without");
+      missing(value, "value", "a finite number; only source = \"extrapolated FEM\" goes without");
     read_tolerance(table, expect);
   }
   if (const auto where = table.find("where")) expect.where = as_text(*where);
@@ -251,6 +241,19 @@ double most_cells(const Body& body) {
   for (const Cells& cells : body.cells) most = std::max(most, double(cells[0]) * cells[1] * cells[2]);
   for (const int voxels : body.voxel_counts) most = std::max(most, double(voxels));
   return most;
+}
+
+/// The models of a case with [dynamics]: each one's equilibrium, unless it is left out, and its motion, labelled
+/// "NAME in motion".
+std::vector<ModelChoice> with_motions(const std::vector<ModelChoice>& models, const MotionChoice& motion) {
+  std::vector<ModelChoice> all;
+  for (const ModelChoice& model : models) {
+    if (motion.equilibrium) all.push_back(model);
+    all.push_back(model);
+    all.back().label += " in motion";
+    all.back().in_motion = true;
+  }
+  return all;
 }
 
 void read_compare_table(const TomlValue& value, const TomlTable& document, Experiment& experiment) {
@@ -278,8 +281,10 @@ void read_compare_table(const TomlValue& value, const TomlTable& document, Exper
 
 }  // namespace
 
+std::string to_string(Source source) { return source_names[static_cast<std::size_t>(source)]; }
+
 void refuse_label(const TomlValue& item, const std::string& label, const std::vector<ModelChoice>& others) {
-  const bool unseen = std::any_of(label.begin(), label.end(), [](unsigned char c) { return c < ' ' || c == 0x7f; });
+  const bool unseen = std::ranges::any_of(label, [](unsigned char c) { return c < ' ' || c == 0x7f; });
   if (unseen || label.size() > longest_file_name)
     refuse(item, fmt::format("the label '{}' cannot name a file", label),
            fmt::format("up to {} letters, no control characters", longest_file_name));
@@ -308,13 +313,13 @@ void read_compare(const TomlTable& document, Experiment& experiment) {
   if (experiment.dynamics) experiment.models = with_motions(experiment.models, *experiment.dynamics);
   read_externals(document, experiment);
   // Displacement errors alone are not enough for a body that is moved by its supports.
-  if (!experiment.models.empty() && !moved_patches(experiment).empty() && !asks_for(experiment, "reaction_error"))
+  if (!experiment.models.empty() && !moved_patches(experiment).empty() && !experiment.asks_for("reaction_error"))
     experiment.measures.emplace_back("reaction_error");
-  if (!experiment.body.accuracies.empty() && !experiment.models.empty() && !asks_for(experiment, "promised_error"))
+  if (!experiment.body.accuracies.empty() && !experiment.models.empty() && !experiment.asks_for("promised_error"))
     experiment.measures.emplace_back("promised_error");
   if (experiment.reference.in_time && !experiment.models.empty())
     for (const char* measure : {"motion", "motion_error"})
-      if (!asks_for(experiment, measure)) experiment.measures.emplace_back(measure);
+      if (!experiment.asks_for(measure)) experiment.measures.emplace_back(measure);
 }
 
 void read_expectations(const TomlTable& document, Experiment& experiment) {

@@ -92,7 +92,7 @@ std::vector<RelaxationBranch> read_branches(const TomlValue& value) {
     const TomlTable table(item, keys_of("material.relaxation.branches"));
     const RelaxationBranch branch{as_number(table.at("share"), {"a number from 1e-6 to 1000", 1e-6, 1000, true, true}),
                                   as_number(table.at("time_s"), positive_number)};
-    if (std::any_of(branches.begin(), branches.end(), [&](const auto& other) { return other.time == branch.time; }))
+    if (std::ranges::any_of(branches, [&](const auto& other) { return other.time == branch.time; }))
       refuse(table.at("time_s"), fmt::format("{} s is that of another branch", branch.time),
              "one branch of each time, with the sum of their shares");
     branches.push_back(branch);
@@ -120,8 +120,6 @@ void check_supports(const Experiment& e) {
 
 }  // namespace
 
-std::vector<std::string> integrator_names() { return {"explicit", "energy_momentum", "implicit_euler", "auto"}; }
-
 void read_dynamics(const TomlTable& document, Experiment& experiment) {
   const auto value = document.find("dynamics");
   if (experiment.reference.in_time && (!value || experiment.probes.empty()))
@@ -137,7 +135,7 @@ void read_dynamics(const TomlTable& document, Experiment& experiment) {
   motion.where = motion.integrator_where = location_of(*value);
   motion.duration = as_number(table.at("duration_s"), positive_number);
   if (const auto integrator = table.find("integrator")) {
-    motion.integrator = as_choice(*integrator, integrator_names());
+    motion.integrator = as_choice(*integrator, {"explicit", "energy_momentum", "implicit_euler", "auto"});
     motion.integrator_where = location_of(*integrator);
   }
   if (const auto start = table.find("start")) motion.released = as_choice(*start, {"rest", "equilibrium"}) != "rest";
@@ -168,17 +166,6 @@ void read_dynamics(const TomlTable& document, Experiment& experiment) {
   experiment.dynamics = motion;
 }
 
-std::vector<ModelChoice> with_motions(const std::vector<ModelChoice>& models, const MotionChoice& motion) {
-  std::vector<ModelChoice> all;
-  for (const ModelChoice& model : models) {
-    if (motion.equilibrium) all.push_back(model);
-    all.push_back(model);
-    all.back().label += " in motion";
-    all.back().in_motion = true;
-  }
-  return all;
-}
-
 void read_relaxation(const TomlTable& document, Experiment& experiment) {
   const auto value = TomlTable(document.at("material"), keys_of("material")).find("relaxation");
   if (!value) return;
@@ -199,7 +186,7 @@ void check_relaxation(const Experiment& e) {
     const auto* field = std::get_if<PrescribedField>(&load);
     return field && field->kelvin;
   };
-  if (!e.relaxation.acts() || !(e.line || std::any_of(e.loads.begin(), e.loads.end(), is_exact))) return;
+  if (!e.relaxation.acts() || !(e.line || std::ranges::any_of(e.loads, is_exact))) return;
   throw InputError(e.relaxation_where,
                    "material.relaxation: stands beside an exact line or field, which is of a material that does not "
                    "relax (allowed: one of the two)");

@@ -2,7 +2,6 @@
 #include <fmt/ranges.h>
 
 #include "problem/case_file/experiment_parts.h"
-#include "problem/case_file/external.h"
 
 namespace springproof {
 namespace {
@@ -51,8 +50,8 @@ std::vector<ModelChoice> read_external(const TomlValue& value, const Experiment&
   if (const auto springs = table.find("springs")) choice.options["springs"] = as_flag(*springs);
   const auto files = table.find("files");
   if (!files && !table.find("file"))
-    refuse({value.node, value.key + ".file", value.file}, "is missing",
-           "the name of a CSV file of points and displacements, or files = [{ poisson_ratio = 0.3, file = \"...\" }]");
+    missing(value, "file",
+            "the name of a CSV file of points and displacements, or files = [{ poisson_ratio = 0.3, file = \"...\" }]");
   if (!files) return {read_file(table, choice, experiment)};
   for (const Key& key : keys_of("external.files"))
     if (const auto beside = table.find(key.name)) refuse(*beside, "stands beside files", "in the rows of files");

@@ -10,8 +10,8 @@ namespace {
 /// The requirement of Kelvin's solution that a case does not meet; nullptr: none.
 const char* missing_for_kelvin(const Experiment& experiment) {
   if (experiment.materials.size() != 1) return "one material";
-  const auto forces = std::count_if(experiment.loads.begin(), experiment.loads.end(),
-                                    [](const Load& load) { return std::holds_alternative<PointForce>(load); });
+  const auto forces = std::ranges::count_if(experiment.loads,
+                                            [](const Load& load) { return std::holds_alternative<PointForce>(load); });
   if (forces != 1) return "exactly one point force, a [[load]] with force_N and at_m";
   return experiment.model_kinematics() == Kinematics::linear ? nullptr : "kinematics = \"linear\"";
 }

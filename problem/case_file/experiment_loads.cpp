@@ -38,34 +38,6 @@ Load read_rotation(const TomlTable& table, const std::string& on) {
                             degrees * std::numbers::pi / 180};
 }
 
-Load read_field(const TomlTable& table, const std::string& on) {
-  std::vector<std::string> names = exact_field_names();
-  names.emplace_back("kelvin");
-  return PrescribedField{on, as_choice(table.at("field"), names)};
-}
-
-Load read_pressure(const TomlTable& table, const std::string& on) {
-  return Pressure{on, as_number(table.at("pressure_Pa"))};
-}
-
-Load read_traction(const TomlTable& table, const std::string& on) {
-  return Traction{on, as_vector(table.at("traction_Pa"))};
-}
-
-Load read_patch_force(const TomlTable& table, const std::string& on) {
-  return PatchForce{on, as_vector(table.at("force_N"))};
-}
-
-Load read_point_force(const TomlTable& table, const std::string&) {
-  return PointForce{as_vector(table.at("at_m")), as_vector(table.at("force_N"))};
-}
-
-Load read_gravity(const TomlTable& table, const std::string&) { return Gravity{as_vector(table.at("gravity_m_s2"))}; }
-
-Load read_body_force(const TomlTable& table, const std::string&) {
-  return FieldBodyForce{as_choice(table.at("body_force_of"), exact_field_names())};
-}
-
 /// A kind of load is recognised by its keys and then read with those of its own.
 struct LoadKind {
   const char* table;     ///< its keys in keys.h: "load." and the key that it is recognised by
@@ -75,15 +47,31 @@ struct LoadKind {
   const char* mark() const { return table + std::string_view("load.").size(); }
 };
 
+std::vector<std::string> names_of_fields() {
+  std::vector<std::string> names = exact_field_names();
+  names.emplace_back("kelvin");
+  return names;
+}
+
+using Table = const TomlTable&;
+using Patch = const std::string&;
+
 // The first matching kind is used, so the affine kind precedes the plain displacement and the point force the patch
 // force.
+// clang-format off
 const LoadKind load_kinds[] = {
-    {"load.displacement_gradient", nullptr, read_affine}, {"load.displacement_m", nullptr, read_displacement},
-    {"load.rotation_deg", nullptr, read_rotation},        {"load.field", nullptr, read_field},
-    {"load.traction_Pa", nullptr, read_traction},         {"load.pressure_Pa", nullptr, read_pressure},
-    {"load.at_m", "force_N", read_point_force},           {"load.force_N", nullptr, read_patch_force},
-    {"load.gravity_m_s2", nullptr, read_gravity},         {"load.body_force_of", nullptr, read_body_force},
+    {"load.displacement_gradient", nullptr, read_affine},
+    {"load.displacement_m", nullptr, read_displacement},
+    {"load.rotation_deg", nullptr, read_rotation},
+    {"load.field", nullptr, [](Table t, Patch on) -> Load { return PrescribedField{on, as_choice(t.at("field"), names_of_fields())}; }},
+    {"load.traction_Pa", nullptr, [](Table t, Patch on) -> Load { return Traction{on, as_vector(t.at("traction_Pa"))}; }},
+    {"load.pressure_Pa", nullptr, [](Table t, Patch on) -> Load { return Pressure{on, as_number(t.at("pressure_Pa"))}; }},
+    {"load.at_m", "force_N", [](Table t, Patch) -> Load { return PointForce{as_vector(t.at("at_m")), as_vector(t.at("force_N"))}; }},
+    {"load.force_N", nullptr, [](Table t, Patch on) -> Load { return PatchForce{on, as_vector(t.at("force_N"))}; }},
+    {"load.gravity_m_s2", nullptr, [](Table t, Patch) -> Load { return Gravity{as_vector(t.at("gravity_m_s2"))}; }},
+    {"load.body_force_of", nullptr, [](Table t, Patch) -> Load { return FieldBodyForce{as_choice(t.at("body_force_of"), exact_field_names())}; }},
 };
+// clang-format on
 
 /// The keys of loads of all kinds.
 std::vector<Key> keys_of_loads() {
@@ -91,7 +79,7 @@ std::vector<Key> keys_of_loads() {
   for (const LoadKind& kind : load_kinds)
     for (Key key : keys_of(kind.table)) {
       key.otherwise = "";  // none is required before the kind is known
-      if (std::none_of(keys.begin(), keys.end(), [&](const Key& k) { return std::string_view(k.name) == key.name; }))
+      if (std::ranges::none_of(keys, [&](const Key& k) { return std::string_view(k.name) == key.name; }))
         keys.push_back(key);
     }
   return keys;
@@ -109,7 +97,7 @@ std::vector<std::string> read_patches(const TomlValue& value) {
   std::vector<std::string> patches;
   for (const TomlValue& item : one_or_several(value)) {
     const std::string patch = as_text(item);
-    if (std::find(patches.begin(), patches.end(), patch) != patches.end())
+    if (std::ranges::find(patches, patch) != patches.end())
       refuse(item, fmt::format("names '{}' twice", patch), "each patch once");
     patches.push_back(patch);
   }

@@ -10,25 +10,11 @@
 #include "problem/case_file/experiment_parts.h"
 #include "problem/case_file/measures.h"
 #include "problem/case_file/varied.h"
-#include "problem/files/named_files.h"
+#include "problem/files/files.h"
 #include "problem/system/input_error.h"
 
 namespace springproof {
 namespace {
-
-std::vector<std::string> names_of(const Experiment& e) {
-  std::vector<std::string> names;
-  for (const LoadCase& c : e.load_cases) names.push_back(c.name);
-  return names;
-}
-
-template <class Named>
-std::string read_own_name(const TomlValue& value, const std::vector<Named>& others) {
-  std::string name = as_text(value);
-  if (std::any_of(others.begin(), others.end(), [&](const Named& other) { return other.name == name; }))
-    refuse(value, fmt::format("'{}' is the name of another", name), "a name of its own");
-  return name;
-}
 
 void read_load_cases(const TomlTable& document, Experiment& e) {
   for (const TomlValue& value : document.tables("load_case")) {
@@ -60,9 +46,9 @@ void read_inputs(const TomlTable& document, Experiment& e) {
 }
 
 std::size_t read_load_case(const TomlValue& value, const Experiment& e) {
-  const std::vector<std::string> names = names_of(e);
-  const std::string name = as_choice(value, names);
-  return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+  std::vector<std::string> names;
+  for (const LoadCase& c : e.load_cases) names.push_back(c.name);
+  return as_choice_number(value, names);
 }
 
 /// A length that no part of the body can have moved by was written in another unit.
@@ -78,7 +64,7 @@ MeasuredValue read_quantity(const TomlTable& table, const Experiment& e) {
   MeasuredValue m{.name = read_own_name(table.at("name"), e.measured),
                   .quantity = read_row_name(table.at("quantity"), e),
                   .where = location_of(table.at("quantity"))};
-  if (std::any_of(e.measured.begin(), e.measured.end(), [&](const auto& other) { return other.history == m.name; }))
+  if (std::ranges::any_of(e.measured, [&](const auto& other) { return other.history == m.name; }))
     refuse(table.at("name"), fmt::format("'{}' is the name of a history", m.name), "a name of its own");
   if (is_distance(m.quantity) || is_deviation(m.quantity))
     refuse(table.at("quantity"), fmt::format("'{}' is a difference between computations", m.quantity),
@@ -164,9 +150,9 @@ void read_samples(const TomlValue& value, Experiment& e, const std::string& sour
 
 /// One input is fitted to one value, or none to none.
 void check_fit(const TomlValue& first, const Experiment& e) {
-  const auto inputs = std::count_if(e.inputs.begin(), e.inputs.end(),
-                                    [](const auto& i) { return i.kind == UncertainInput::Kind::fitted; });
-  const auto values = std::count_if(e.measured.begin(), e.measured.end(), [](const auto& m) { return m.fitted; });
+  const auto inputs =
+      std::ranges::count_if(e.inputs, [](const auto& i) { return i.kind == UncertainInput::Kind::fitted; });
+  const auto values = std::ranges::count_if(e.measured, [](const auto& m) { return m.fitted; });
   if (inputs != values || inputs > 1)
     refuse(first, fmt::format("{} inputs are fitted to {} values", inputs, values),
            "one [[input]] with fitted = true beside one value with use = \"fit\", or neither");
@@ -190,10 +176,6 @@ void read_measured_set(const TomlValue& value, Experiment& e) {
   if (histories)
     for (const TomlValue& item : as_list(*histories, "a list of { name, quantity, file }"))
       read_samples(item, e, source, licence);
-}
-
-void add_measure(const char* name, Experiment& e) {
-  if (std::find(e.measures.begin(), e.measures.end(), name) == e.measures.end()) e.measures.emplace_back(name);
 }
 
 constexpr std::uintmax_t largest_history = 1 << 20;  // [bytes]
@@ -234,9 +216,9 @@ void read_measured(const TomlTable& document, Experiment& e) {
   if (sets.empty()) return;
   for (const TomlValue& set : sets) read_measured_set(set, e);
   check_fit(sets.front(), e);
-  add_measure("measured", e);
-  if (std::any_of(e.measured.begin(), e.measured.end(), [](const auto& m) { return !m.arm.isZero(0); }))
-    add_measure("turn", e);
+  if (!e.asks_for("measured")) e.measures.emplace_back("measured");
+  const bool turns = std::ranges::any_of(e.measured, [](const auto& m) { return !m.arm.isZero(0); });
+  if (turns && !e.asks_for("turn")) e.measures.emplace_back("turn");
   for (std::size_t c = 0; c < e.load_cases.size(); ++c) {
     if (c > 0) varied(e, {c, {}});
     for (std::size_t i = 0; i < e.inputs.size(); ++i) varied(e, {c, i});
@@ -258,7 +240,7 @@ std::vector<HistorySample> read_history(const std::filesystem::path& file, const
     if (fields.size() == 1 && fields.front().empty()) continue;
     if (fields.size() != 3) refuse_line(file, number, fmt::format("has {} fields", fields.size()), columns);
     const auto at = [&](std::size_t i) { return number_of_field(fields[i], file, number); };
-    const HistorySample sample{at(0), at(1), at(2), number};
+    const HistorySample sample{at(0), at(1), at(2)};
     const double before = samples.empty() ? 0 : samples.back().time;
     if (!(sample.time > before))
       refuse_line(file, number, fmt::format("{} s is not after {} s", fields[0], before),

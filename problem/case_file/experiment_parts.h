@@ -46,6 +46,16 @@ PatchRule::Beyond read_beyond(const TomlValue& value);
 /// What is near to a point.
 PatchRule::Near read_near(const TomlValue& value);
 
+/// A name that none of the others has.
+/// @param kind of thing, " probe"
+template <class Named>
+std::string read_own_name(const TomlValue& value, const std::vector<Named>& others, const std::string& kind = "") {
+  std::string name = as_text(value);
+  for (const Named& other : others)
+    if (other.name == name) refuse(value, "'" + name + "' is the name of another" + kind, "a name of its own");
+  return name;
+}
+
 /// A list of elements, each once.
 std::vector<std::string> read_elements(const TomlValue& value, const std::vector<std::string>& allowed);
 
@@ -64,9 +74,6 @@ void read_line(const TomlTable& document, Experiment& experiment);
 /// [dynamics]; the kinematics must have been read.
 void read_dynamics(const TomlTable& document, Experiment& experiment);
 
-/// The models of a case with [dynamics]: each one's equilibrium, unless it is left out, and its motion, labelled
-/// "NAME in motion".
-std::vector<ModelChoice> with_motions(const std::vector<ModelChoice>& models, const MotionChoice& motion);
 /// [fracture]; loads and kinematics must have been read.  A drying body has no finite element reference.
 void read_fracture(const TomlTable& document, Experiment& experiment);
 
@@ -108,7 +115,6 @@ Experiment read_document(const toml::table& document, const Experiment& experime
 struct HistorySample {
   double time = 0;          ///< [s]
   double value = 0, u = 0;  ///< with its standard uncertainty, in the unit of the columns
-  int line = 0;             ///< from 1
 };
 
 inline constexpr std::size_t most_samples = 20;  ///< of a history: each is an equilibrium of its own

@@ -33,8 +33,7 @@ namespace {
 
 BodySide read_side(const TomlValue& value) {
   const auto names = names_of(BodySide{});
-  const std::string name = as_choice(value, {names.begin(), names.end()});
-  return static_cast<BodySide>(std::find(names.begin(), names.end(), name) - names.begin());
+  return static_cast<BodySide>(as_choice_number(value, {names.begin(), names.end()}));
 }
 
 PatchRule::Facing read_facing(const TomlValue& value) {
@@ -81,11 +80,8 @@ PatchRule parse_patch_rule(const std::string& name, const std::string& text, con
 std::vector<PatchRule> read_patch_rules(const TomlTable& document) {
   std::vector<PatchRule> rules;
   for (const TomlValue& value : document.tables("patch")) {
+    read_own_name(TomlTable(value, keys_of("patch")).at("name"), rules, " patch");
     rules.push_back(read_rule(value));
-    for (std::size_t i = 0; i + 1 < rules.size(); ++i)
-      if (rules[i].name == rules.back().name)
-        refuse(TomlTable(value, keys_of("patch")).at("name"),
-               fmt::format("'{}' is the name of another patch", rules[i].name), "a name of its own");
   }
   return rules;
 }

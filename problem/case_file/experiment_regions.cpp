@@ -77,25 +77,6 @@ ListedModuli told_apart(std::size_t region, std::vector<IsotropicMaterial> mater
   return listed;
 }
 
-/// What of a case is computed of one material alone, and what it may be instead; empty: nothing.
-std::optional<std::pair<std::string, SourceLocation>> of_one_material(const Experiment& e) {
-  const SourceLocation& region = e.regions.front().where;
-  const auto says = [&](const char* what, const char* allowed) {
-    return std::pair{fmt::format("region: '{}': {} (allowed: {})", e.regions.front().name, what, allowed), region};
-  };
-  if (e.reference.smooth) return says("strains jump where materials meet", "smooth = false in [reference]");
-  if (std::find(e.measures.begin(), e.measures.end(), "promised_error") != e.measures.end())
-    return says("strains jump where materials meet, which promised_error takes for an error", "other measures");
-  if (e.parts) return says("the parts of errors are of one material", "no parts in [compare]");
-  if (e.fracture) return says("drying bodies are of one material", "no [fracture]");
-  if (e.relaxation.acts()) return says("relaxation is of one material", "no [material.relaxation]");
-  if (e.line || !e.exact.empty()) return says("exact fields are of one material", "no [line] and no exact");
-  for (const Load& load : e.loads)
-    if (std::holds_alternative<FieldBodyForce>(load) || std::holds_alternative<PrescribedField>(load))
-      return says("exact fields are of one material", "no load by a field");
-  return {};
-}
-
 }  // namespace
 
 std::vector<IsotropicMaterial> read_moduli(const TomlTable& table, double density) {
@@ -132,13 +113,10 @@ std::vector<MaterialRegion> read_regions(const TomlTable& document, const Experi
   constexpr std::size_t most = 255;  // numbers of Mesh::materials
   std::vector<MaterialRegion> regions;
   for (const TomlValue& value : document.tables("region")) {
+    const TomlValue name = TomlTable(value, keys_of("region")).at("name");
+    if (read_own_name(name, regions, " region") == "body")  // as interface.NAME.body names what is in none
+      refuse(name, "'body' is the rest of the body", "another name");
     regions.push_back(read_region(value, experiment));
-    for (std::size_t i = 0; i + 1 < regions.size(); ++i)
-      if (regions[i].name == regions.back().name)
-        refuse(TomlTable(value, keys_of("region")).at("name"),
-               fmt::format("'{}' is the name of another region", regions[i].name), "a name of its own");
-    if (regions.back().name == "body")  // as interface.NAME.body names what is in none
-      refuse(TomlTable(value, keys_of("region")).at("name"), "'body' is the rest of the body", "another name");
     if (regions.size() > most) refuse(value, fmt::format("is number {}", regions.size()), "up to 255 regions");
   }
   return regions;
@@ -165,7 +143,21 @@ ListedModuli read_listed(const TomlTable& document, const Experiment& e) {
 
 void check_regions(const Experiment& e) {
   if (e.regions.empty()) return;
-  if (const auto refused = of_one_material(e)) throw InputError(refused->second, refused->first);
+  const auto refuse_if = [&, &first = e.regions.front()](bool is_there, const char* what, const char* allowed) {
+    if (is_there)
+      throw InputError(first.where, fmt::format("region: '{}': {} (allowed: {})", first.name, what, allowed));
+  };
+  refuse_if(e.reference.smooth, "strains jump where materials meet", "smooth = false in [reference]");
+  refuse_if(e.asks_for("promised_error"), "strains jump where materials meet, which promised_error takes for an error",
+            "other measures");
+  refuse_if(e.parts, "the parts of errors are of one material", "no parts in [compare]");
+  refuse_if(e.fracture.has_value(), "drying bodies are of one material", "no [fracture]");
+  refuse_if(e.relaxation.acts(), "relaxation is of one material", "no [material.relaxation]");
+  refuse_if(e.line || !e.exact.empty(), "exact fields are of one material", "no [line] and no exact");
+  const auto by_field = [](const Load& load) {
+    return std::holds_alternative<FieldBodyForce>(load) || std::holds_alternative<PrescribedField>(load);
+  };
+  refuse_if(std::ranges::any_of(e.loads, by_field), "exact fields are of one material", "no load by a field");
 }
 
 void require_one_listed(const Experiment& e) {

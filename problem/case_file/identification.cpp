@@ -101,12 +101,11 @@ std::vector<std::size_t> read_fitted(const TomlTable& table, const Experiment& e
   }
   fitted.clear();
   for (const TomlValue& item : as_list(*chosen, "a list of names of measured values")) {
-    const std::string name = as_choice(item, names);
-    const auto number = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
-    if (std::find(fitted.begin(), fitted.end(), number) != fitted.end())
-      refuse(item, fmt::format("'{}' is named twice", name), "each value once");
+    const std::size_t number = as_choice_number(item, names);
+    if (std::ranges::find(fitted, number) != fitted.end())
+      refuse(item, fmt::format("'{}' is named twice", names[number]), "each value once");
     if (!std::isfinite(e.measured[number].value))
-      refuse(item, fmt::format("'{}' is not measured yet", name), "values that are");
+      refuse(item, fmt::format("'{}' is not measured yet", names[number]), "values that are");
     fitted.push_back(number);
   }
   return fitted;
@@ -134,7 +133,7 @@ std::vector<OtherInput> other_inputs(const toml::table& document, const Experime
       changed.push_back(of->value_or(std::string()));
     OtherInput input{i, {}};
     for (std::size_t p = 0; p < parameters.size(); ++p)
-      if (std::any_of(changed.begin(), changed.end(), [&](const std::string& path) {
+      if (std::ranges::any_of(changed, [&](const std::string& path) {
             return std::find(parameters[p].of.begin(), parameters[p].of.end(), path) != parameters[p].of.end();
           }))
         input.sought.push_back(p);

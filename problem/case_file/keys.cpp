@@ -2,11 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <stdexcept>
-#include <utility>
-
-#include "problem/case_file/units.h"
 
 namespace springproof {
 namespace {
@@ -366,82 +362,7 @@ constexpr KeyTable tables[] = {
   {"fracture",                   "[fracture]",                       "Under kinematics = \"linear\", on supports at rest ([fracture](fracture.md)).", fracture_keys},
 };
 
-constexpr std::pair<std::string_view, std::string_view> usual_names[] = {
-  {"damping_ratio",   "loss_factor with band_Hz is twice the damping ratio"},
-  {"damping",         "damping_1_s is a rate, loss_factor with band_Hz twice the damping ratio"},
-  {"E",               "youngs_modulus_Pa is Young's modulus"},
-  {"youngs_modulus",  "youngs_modulus_Pa is Young's modulus"},
-  {"nu",              "poisson_ratio is Poisson's ratio"},
-  {"poissons_ratio",  "poisson_ratio is Poisson's ratio"},
-  {"rho",             "density_kg_m3 is the density"},
-  {"density",         "density_kg_m3 is the density"},
-  {"fixed",           "displacement_m = [0, 0, 0] in a [[load]] holds a patch"},
-  {"fix",             "displacement_m = [0, 0, 0] in a [[load]] holds a patch"},
-  {"support",         "displacement_m = [0, 0, 0] in a [[load]] holds a patch"},
-  {"gravity",         "gravity_m_s2 in a [[load]] is gravity"},
-  {"force",           "force_N in a [[load]] is a force"},
-  {"pressure",        "pressure_Pa in a [[load]] is a pressure"},
-  {"thickness",       "there are no shells: a body is a solid, and a thin one has cells that are smaller than it is thick"},
-  {"shell",           "there are no shells: a body is a solid, and a thin one has cells that are smaller than it is thick"},
-  {"cloth",           "there is no cloth: a body is a solid"},
-  {"contact",         "there is no contact but with a plane: plane of [dynamics]"},
-  {"self_contact",    "there is no contact but with a plane: plane of [dynamics]"},
-  {"sphere",          "there is no contact but with a plane: plane of [dynamics]"},
-  {"regions",         "[[region]] is a part of the body of another material"},
-  {"materials",       "[material] is the body's, [[region]] that of a part of it"},
-  {"inclusion",       "[[region]] is a part of the body of another material"},
-  {"fibres",          "materials are isotropic: there are no fibres"},
-  {"fibers",          "materials are isotropic: there are no fibres"},
-};
-
-// Longer ones first.
-constexpr std::pair<std::string_view, const char*> units[] = {
-  {"_kg_m3", "kg/m³"}, {"_kg", "kg"}, {"_m_s2", "m/s²"}, {"_rad_s", "rad/s"}, {"_m_s", "m/s"}, {"_1_s", "1/s"},
-  {"_Pa", "Pa"}, {"_Hz", "Hz"}, {"_deg", "°"}, {"_N", "N"}, {"_m", "m"}, {"_s", "s"},
-};
 // clang-format on
-
-/// What a refusal says of a value, and how the page says it.
-constexpr std::pair<std::string_view, std::string_view> on_page[] = {
-    {", each a finite number or \"free\"", ", \"free\" in place of any"},
-    {"each a finite number >", "each >"},
-    {", each a finite number", ""},
-    {"a finite number", "number"},
-    {"a whole number", "integer"},
-    {"an integer", "integer"},
-    {"a number", "number"},
-    {", or a list of such", " or list"},
-};
-
-/// "" of a key that heads a table of its own.
-std::string value_of(const Key& key) {
-  std::string value = *key.example ? key.allowed : "";
-  for (const auto& [said, shorter] : on_page)
-    if (const auto at = value.find(said); at != std::string::npos) value.replace(at, said.size(), shorter);
-  return value;
-}
-
-std::string section_of(std::string_view heading, std::string_view what) {
-  return fmt::format("\n## {}\n\n{}{}| key | what | value | default | example |\n|---|---|---|---|---|\n", heading,
-                     what, what.empty() ? "" : "\n\n");
-}
-
-/// `inside`: "plane." of a key of the table plane of [dynamics].
-std::string row_of(const Key& key, std::string_view inside) {
-  return fmt::format("| `{}{}` | {} | {} | {} | {} |\n", inside, key.name, key.what, value_of(key),
-                     key.otherwise ? key.otherwise : "required",
-                     *key.example ? fmt::format("`{}`", key.example) : "below");
-}
-
-/// Whether a table above it with the same root has the same key.
-bool stands_above(const KeyTable& table, const Key& key) {
-  const auto root = [](std::string_view name) { return name.substr(0, name.find('.')); };
-  for (const KeyTable* above = tables; above != &table; ++above)
-    if (root(above->name) == root(table.name))
-      for (const Key& other : above->keys)
-        if (std::string_view(other.name) == key.name && std::string_view(other.what) == key.what) return true;
-  return false;
-}
 
 }  // namespace
 
@@ -451,52 +372,6 @@ std::span<const Key> keys_of(std::string_view table) {
   for (const KeyTable& t : tables)
     if (t.name == table) return t.keys;
   throw std::logic_error(fmt::format("case files have no table '{}'", table));
-}
-
-std::string_view usual_name(std::string_view name) {
-  const auto* known = std::find_if(std::begin(usual_names), std::end(usual_names),
-                                   [&](const auto& entry) { return entry.first == name; });
-  return known == std::end(usual_names) ? std::string_view{} : known->second;
-}
-
-std::string unit_of(const Key& key) {
-  for (const auto& [suffix, unit] : units)
-    if (std::string_view(key.name).ends_with(suffix)) return unit;
-  return "";
-}
-
-std::string keys_page() {
-  std::string page =
-      "# Keys of a case file\n\n"
-      "Printed by `springproof describe keys`. A case is a file in TOML; the [tutorial](tutorial.md) has a first one. "
-      "Any other key, type or number is refused with its line, what is allowed and the nearest key. Numbers are "
-      "finite, in the unit that their key ends with; x, y, z are numbers.\n";
-  bool loads = false;
-  for (const KeyTable& table : tables) {
-    const std::string_view name = table.name;
-    const bool load = name.starts_with("load.");
-    if (load && !std::exchange(loads, true))
-      page += section_of("[[load]]",
-                         "One of these kinds; all but the last three act on a patch or a list of patches: "
-                         "`on = \"x_min\"`.");
-    if (load)
-      page += fmt::format("| *{}* | {} | | | |\n", table.heading, table.what);
-    else if (*table.heading)
-      page += section_of(table.heading, table.what);
-    const std::string inside = *table.heading ? "" : fmt::format("{}.", name.substr(name.find('.') + 1));
-    for (const Key& key : table.keys)
-      if (load ? std::string_view(key.name) != on.name : inside.empty() || !stands_above(table, key))
-        page += row_of(key, inside);
-  }
-  page +=
-      "\n## Units\n\nUnder `units = \"mm\"` keys end as below; files of bodies (but STEP, which states its unit) "
-      "and of `[[external]]` are in mm, values of `[[expect]]`, `[[published]]`, results and report in mm, N, MPa "
-      "and t. Springs files, VTU, glTF and notes stay in SI.\n\n"
-      "| `units` | in place of `_m` | `_Pa` | `_kg_m3` | `_kg` | `_m_s2` | `_m_s` |\n|---|---|---|---|---|---|---|\n| "
-      "`\"mm\"` |";
-  for (const char* ending : {"_m", "_Pa", "_kg_m3", "_kg", "_m_s2", "_m_s"})
-    page += fmt::format(" `{}` |", key_in(Units::mm, ending).name);
-  return page + "\n";
 }
 
 }  // namespace springproof

@@ -32,13 +32,6 @@ std::span<const KeyTable> key_tables();
 /// @throws std::logic_error if there is no table of this name.
 std::span<const Key> keys_of(std::string_view table);
 
-/// What stands here for a key by another name that is usual, or that there is nothing of the kind: "loss_factor is
-/// twice the damping ratio"; "" for other names.
-std::string_view usual_name(std::string_view name);
-
-/// The unit that a key's name ends with, "kg/m³" of density_kg_m3; "" if it has none.
-std::string unit_of(const Key& key);
-
 /// The tables as a page in Markdown, docs/keys.md.
 std::string keys_page();
 

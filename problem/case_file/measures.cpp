@@ -8,8 +8,25 @@
 namespace springproof {
 namespace {
 
-void add_vector_rows(const std::string& prefix, std::vector<std::string>& rows) {
-  for (const char* component : {".x", ".y", ".z", ".magnitude"}) rows.push_back(prefix + component);
+using Rows = std::vector<std::string>;
+const Rows of_axes = {".x", ".y", ".z"}, of_vector = {".x", ".y", ".z", ".magnitude"},
+           of_tensor = {".xx", ".yy", ".zz", ".xy", ".yz", ".xz"},
+           of_a_region = {".volume_change",         ".pressure",       ".energy",         ".mean_stress.xx",
+                          ".mean_stress.yy",        ".mean_stress.zz", ".mean_stress.xy", ".mean_stress.yz",
+                          ".mean_stress.xz",        ".displacement.x", ".displacement.y", ".displacement.z",
+                          ".displacement.magnitude"};
+
+/// The names of things, or names, each with each of the endings.
+template <class Things>
+Rows each(const std::string& beginning, const Things& things, const Rows& endings = {""}) {
+  Rows rows;
+  for (const auto& thing : things)
+    for (const std::string& ending : endings)
+      if constexpr (requires { thing.name; })
+        rows.push_back(beginning + thing.name + ending);
+      else
+        rows.push_back(beginning + thing + ending);
+  return rows;
 }
 
 const std::string mean_displacement = "mean_displacement.", turn = "turn.";
@@ -17,8 +34,7 @@ const std::string mean_displacement = "mean_displacement.", turn = "turn.";
 /// Whether the load prescribes a displacement other than zero.
 bool moves(const Load& load) {
   if (const auto* p = std::get_if<PrescribedDisplacement>(&load))
-    return std::any_of(p->displacement.begin(), p->displacement.end(),
-                       [](const auto& u) { return u.value_or(0) != 0; });
+    return std::ranges::any_of(p->displacement, [](const auto& u) { return u.value_or(0) != 0; });
   if (const auto* a = std::get_if<PrescribedAffine>(&load)) return !a->gradient.isZero(0) || !a->offset.isZero(0);
   if (const auto* r = std::get_if<PrescribedRotation>(&load)) return r->angle != 0;
   return std::holds_alternative<PrescribedField>(load);
@@ -30,18 +46,16 @@ std::vector<std::string> patches_of(const Experiment& experiment, bool (*does)(c
   for (const Load& load : experiment.loads) {
     if (!does(load)) continue;
     const std::string& patch = *patch_of(load);
-    if (std::find(patches.begin(), patches.end(), patch) == patches.end()) patches.push_back(patch);
+    if (std::ranges::find(patches, patch) == patches.end()) patches.push_back(patch);
   }
   return patches;
 }
 
-std::vector<std::string> reaction_rows(const Experiment& experiment) {
-  std::vector<std::string> rows;
-  for (const std::string& patch : supported_patches(experiment)) {
-    add_vector_rows("force." + patch, rows);
-    add_vector_rows("torque." + patch, rows);
-  }
-  return rows;
+Rows reaction_rows(const Experiment& experiment) {
+  Rows kinds;
+  for (const std::string& patch : supported_patches(experiment))
+    kinds.insert(kinds.end(), {"force." + patch, "torque." + patch});
+  return each("", kinds, of_vector);
 }
 
 /// Patches named in the case file.
@@ -53,107 +67,23 @@ std::set<std::string> named_patches(const Experiment& experiment) {
   return patches;
 }
 
-std::vector<std::string> mean_displacement_rows(const Experiment& experiment) {
-  std::vector<std::string> rows;
-  for (const std::string& patch : named_patches(experiment)) add_vector_rows(mean_displacement + patch, rows);
-  return rows;
-}
-
-std::vector<std::string> turn_rows(const Experiment& experiment) {
-  std::vector<std::string> rows;
-  for (const std::string& patch : named_patches(experiment))
-    for (const char* axis : {".x", ".y", ".z"}) rows.push_back(turn + patch + axis);
-  return rows;
-}
-
-std::vector<std::string> frequency_rows(const Experiment&) { return {"frequency.x", "frequency.y", "frequency.z"}; }
-
-std::vector<std::string> measured_rows(const Experiment& experiment) {
-  std::vector<std::string> rows;
-  for (const MeasuredValue& m : experiment.measured) rows.push_back("measured." + m.name);
-  return rows;
-}
-
-std::vector<std::string> probe_rows(const Experiment& experiment) {
-  std::vector<std::string> rows;
-  for (const Probe& probe : experiment.probes) add_vector_rows("displacement." + probe.name, rows);
-  return rows;
-}
-
-std::vector<std::string> stress_rows(const Experiment& experiment) {
-  std::vector<std::string> rows;
-  for (const Probe& probe : experiment.probes)
-    for (const char* component : {".xx", ".yy", ".zz", ".xy", ".yz", ".xz"})
-      rows.push_back("stress." + probe.name + component);
-  return rows;
-}
-
-std::vector<std::string> stress_error_rows(const Experiment&) {
-  return {"stress_error.von_mises", "stress_error.hydrostatic", "stress_error.principal"};
-}
-
 /// What is measured of a region, with its unit.
 const std::vector<std::pair<std::string, std::string>> of_region = {
     {".volume_change", "1"}, {".mean_stress", "Pa"}, {".pressure", "Pa"}, {".displacement", "m"}, {".energy", "J"}};
 
-std::vector<std::string> region_rows(const Experiment& experiment) {
-  std::vector<std::string> rows;
-  for (const MaterialRegion& r : experiment.regions) {
-    const std::string region = "region." + r.name;
-    for (const char* scalar : {".volume_change", ".pressure", ".energy"}) rows.push_back(region + scalar);
-    for (const char* component : {".xx", ".yy", ".zz", ".xy", ".yz", ".xz"})
-      rows.push_back(region + ".mean_stress" + component);
-    add_vector_rows(region + ".displacement", rows);
-  }
-  return rows;
-}
-
-std::vector<std::string> interface_rows(const Experiment& experiment) {
-  std::vector<std::string> rows;
+Rows interface_rows(const Experiment& experiment) {
+  Rows interfaces;
   for (std::size_t r = 0; r < experiment.regions.size(); ++r)
     for (std::size_t other = 0; other <= r; ++other)
-      add_vector_rows(interface_of(experiment.regions, static_cast<int>(r + 1), static_cast<int>(other)), rows);
-  return rows;
+      interfaces.push_back(interface_of(experiment.regions, static_cast<int>(r + 1), static_cast<int>(other)));
+  return each("", interfaces, of_vector);
 }
 
-std::vector<std::string> network_rows(const Experiment&) {
-  return {"network.nodes", "network.springs", "network.springs_per_node", "network.mean_length",
-          "network.length_deviation"};
-}
-
-std::vector<std::string> motion_rows(const Experiment&) {
-  std::vector<std::string> rows;
-  for (const MotionMeasure& measure : motion_measures()) rows.push_back("motion." + measure.name);
-  return rows;
-}
-
-std::vector<std::string> moduli_rows(const Experiment&) {
-  return {"moduli.youngs_modulus",          "moduli.youngs_modulus_local",     "moduli.poisson_ratio",
-          "moduli.poisson_ratio_of_fields", "moduli.poisson_ratio_as_printed", "moduli.affine_youngs_modulus"};
-}
-
-std::vector<std::string> line_rows(const Experiment& experiment) {
-  std::vector<std::string> rows;
-  for (const std::string field : {"line.strain", "line.stress"}) {
-    for (const char* component : {".xx", ".yy", ".zz", ".xy", ".yz", ".xz", ".all"}) rows.push_back(field + component);
-    if (experiment.body.resolutions() > 1) rows.push_back(field + ".order");
-  }
-  return rows;
-}
-
-std::vector<std::string> fracture_rows(const Experiment&) {
-  return {"fracture.first_shrinkage",
-          "fracture.broken",
-          "fracture.crack_area_per_volume",
-          "fracture.along_4",
-          "fracture.along_8",
-          "fracture.order_4",
-          "fracture.order_8",
-          "fracture.fragments",
-          "fracture.stored",
-          "fracture.released",
-          "fracture.released_per_area",
-          "fracture.imbalance"};
+Rows line_rows(const Experiment& experiment) {
+  Rows endings = of_tensor;
+  endings.emplace_back(".all");
+  if (experiment.body.resolutions() > 1) endings.emplace_back(".order");
+  return each("line.", Rows{"strain", "stress"}, endings);
 }
 
 /// Length of `name` if it equals the row's name or is its prefix before a dot; otherwise 0.
@@ -210,36 +140,36 @@ const std::vector<Measure>& measure_table() {
      "reaction error of moved supports",
      "|F − F_fem| / |F_fem| or |T − T_fem| / |T_fem|, the largest over the supports that are moved; those that vanish are left out"},
     {"mean_displacement", value, {{"mean_displacement", "m"}},
-     "mean_displacement.PATCH.x|y|z|magnitude, area-weighted mean over a patch [m]", "", "", mean_displacement_rows},
+     "mean_displacement.PATCH.x|y|z|magnitude, area-weighted mean over a patch [m]", "", "", [](const Experiment& e) { return each(mean_displacement, named_patches(e), of_vector); }},
     {"turn", value, {{"turn", "deg"}}, "turn.PATCH.x|y|z, rotation of a patch as a whole, about an axis [deg]",
-     "", "", turn_rows},
+     "", "", [](const Experiment& e) { return each(turn, named_patches(e), of_axes); }},
     {"frequency", value, {{"frequency", "Hz"}}, "frequency.x|y|z, lowest natural frequency of a model whose motion is mostly along that axis [Hz]",
-     "", "", frequency_rows},
+     "", "", [](const Experiment&) { return each("frequency", of_axes); }},
     {"measured", value, {{"measured", "1"}}, "measured.NAME, |E|/u_val of a value of [[measured]]; always judged where there are any",
-     "", "", measured_rows},
-    {"probe", value, {{"displacement", "m"}}, "displacement.PROBE.x|y|z|magnitude [m]", "", "", probe_rows},
-    {"stress", value, {{"stress", "Pa"}}, "stress.PROBE.xx|yy|zz|xy|yz|xz [Pa], finite elements and `hybmss_avg` at small strain", "", "", stress_rows},
+     "", "", [](const Experiment& e) { return each("measured.", e.measured); }},
+    {"probe", value, {{"displacement", "m"}}, "displacement.PROBE.x|y|z|magnitude [m]", "", "", [](const Experiment& e) { return each("displacement.", e.probes, of_vector); }},
+    {"stress", value, {{"stress", "Pa"}}, "stress.PROBE.xx|yy|zz|xy|yz|xz [Pa], finite elements and `hybmss_avg` at small strain", "", "", [](const Experiment& e) { return each("stress.", e.probes, of_tensor); }},
     {"stress_error", distance, {{"stress_error", "1"}},
      "stress_error.von_mises|hydrostatic|principal of `hybmss_avg` and, of blocks, finite elements, small strain: relative L2 difference to FEM over the body",
      "stress error", "of von Mises’, the mean normal and the largest principal stress, recovered at nodes: |σ − σ_fem| in the L2 norm over the body, divided by |σ_fem|",
-     stress_error_rows},
+     [](const Experiment&) { return each("stress_error.", Rows{"von_mises", "hydrostatic", "principal"}); }},
     {"stress_peak", value, {{"stress_peak", "Pa"}}, "largest von Mises stress of the same [Pa], where the reference's is not at a singular edge",
      "largest von Mises stress", "where that of FEM has a limit: not at singular edges and corners"},
     {"region", value, {{"region", "1"}}, "region.REGION.volume_change, .mean_stress.xx|yy|zz|xy|yz|xz and .pressure [Pa], .displacement.x|y|z|magnitude [m] in the mean, .energy [J] of a [[region]]",
-     "", "", region_rows},
+     "", "", [](const Experiment& e) { return each("region.", e.regions, of_a_region); }},
     {"interface", value, {{"interface", "N"}}, "interface.REGION.OTHER.force.x|y|z|magnitude, force on a region by another, named earlier, or by the `body`'s own material [N]",
      "", "", interface_rows},
     {"motion", value, {{"motion.period", "s"}, {"motion.amplitude", "m"}, {"motion.arrival", "s"}, {"motion.contact_time", "s"}, {"motion", "1"}},
-     "of a motion: period [s], amplitude [m], of a pulse arrival [s] of the first probe; of a damped one damping_ratio; on a plane contact_time [s] and restitution; energy_drift, momentum_drift, angular_momentum_drift, inertia_excess of free bodies", "", "", motion_rows},
+     "of a motion: period [s], amplitude [m], of a pulse arrival [s] of the first probe; of a damped one damping_ratio; on a plane contact_time [s] and restitution; energy_drift, momentum_drift, angular_momentum_drift, inertia_excess of free bodies", "", "", [](const Experiment&) { return each("motion.", motion_measures()); }},
     {"motion_error", distance, {{"motion_error", "1"}},
      "relative L2 difference in time of the probes' displacements to finite elements in time; [reference] in_time",
      "difference in time", "|u − u_fem| of the probes in the L2 norm over time, divided by |u_fem|"},
     {"moduli", value, {{"moduli", "1"}, {"moduli.youngs_modulus", "Pa"}, {"moduli.youngs_modulus_local", "Pa"}, {"moduli.affine_youngs_modulus", "Pa"}},
-     "E and nu of a block stretched along x, as the Kot papers measure them", "", "", moduli_rows},
+     "E and nu of a block stretched along x, as the Kot papers measure them", "", "", [](const Experiment&) { return each("moduli.", Rows{"youngs_modulus", "youngs_modulus_local", "poisson_ratio", "poisson_ratio_of_fields", "poisson_ratio_as_printed", "affine_youngs_modulus"}); }},
     {"network", value, {{"network", "1"}, {"network.mean_length", "m"}, {"network.length_deviation", "m"}},
-     "nodes, springs, springs per node, spring lengths [m]", "", "", network_rows},
+     "nodes, springs, springs per node, spring lengths [m]", "", "", [](const Experiment&) { return each("network.", Rows{"nodes", "springs", "springs_per_node", "mean_length", "length_deviation"}); }},
     {"fracture", value, {{"fracture", "1"}, {"fracture.crack_area_per_volume", "1/m"}, {"fracture.stored", "J"}, {"fracture.released", "J"}, {"fracture.released_per_area", "J/m2"}},
-     "cracks of a drying body: shrinkage at the first, area, directions, fragments, energy released", "", "", fracture_rows},
+     "cracks of a drying body: shrinkage at the first, area, directions, fragments, energy released", "", "", [](const Experiment&) { return each("fracture.", Rows{"first_shrinkage", "broken", "crack_area_per_volume", "along_4", "along_8", "order_4", "order_8", "fragments", "stored", "released", "released_per_area", "imbalance"}); }},
     {"line", deviation, {{"line", "1"}}, "strain and stress along [line] against Kelvin's solution", "", "", line_rows},
   };
   // clang-format on
@@ -295,7 +225,7 @@ bool is_deviation(const std::string& row) {
 
 bool wanted(const std::string& row, const std::vector<std::string>& measures) {
   const Measure* measure = measure_of(row);
-  return measure && std::find(measures.begin(), measures.end(), measure->name) != measures.end();
+  return measure && std::ranges::find(measures, measure->name) != measures.end();
 }
 
 std::vector<std::string> measure_names() {

@@ -37,15 +37,47 @@ std::string join_key(const std::string& table, std::string_view key) {
   return table.empty() ? std::string(key) : fmt::format("{}.{}", table, key);
 }
 
+// What stands here for a key by another name that is usual, or that there is nothing of the kind.
+// clang-format off
+constexpr std::pair<std::string_view, std::string_view> usual_names[] = {
+  {"damping_ratio",   "loss_factor with band_Hz is twice the damping ratio"},
+  {"damping",         "damping_1_s is a rate, loss_factor with band_Hz twice the damping ratio"},
+  {"E",               "youngs_modulus_Pa is Young's modulus"},
+  {"youngs_modulus",  "youngs_modulus_Pa is Young's modulus"},
+  {"nu",              "poisson_ratio is Poisson's ratio"},
+  {"poissons_ratio",  "poisson_ratio is Poisson's ratio"},
+  {"rho",             "density_kg_m3 is the density"},
+  {"density",         "density_kg_m3 is the density"},
+  {"fixed",           "displacement_m = [0, 0, 0] in a [[load]] holds a patch"},
+  {"fix",             "displacement_m = [0, 0, 0] in a [[load]] holds a patch"},
+  {"support",         "displacement_m = [0, 0, 0] in a [[load]] holds a patch"},
+  {"gravity",         "gravity_m_s2 in a [[load]] is gravity"},
+  {"force",           "force_N in a [[load]] is a force"},
+  {"pressure",        "pressure_Pa in a [[load]] is a pressure"},
+  {"thickness",       "there are no shells: a body is a solid, and a thin one has cells that are smaller than it is thick"},
+  {"shell",           "there are no shells: a body is a solid, and a thin one has cells that are smaller than it is thick"},
+  {"cloth",           "there is no cloth: a body is a solid"},
+  {"contact",         "there is no contact but with a plane: plane of [dynamics]"},
+  {"self_contact",    "there is no contact but with a plane: plane of [dynamics]"},
+  {"sphere",          "there is no contact but with a plane: plane of [dynamics]"},
+  {"regions",         "[[region]] is a part of the body of another material"},
+  {"materials",       "[material] is the body's, [[region]] that of a part of it"},
+  {"inclusion",       "[[region]] is a part of the body of another material"},
+  {"fibres",          "materials are isotropic: there are no fibres"},
+  {"fibers",          "materials are isotropic: there are no fibres"},
+};
+// clang-format on
+
 /// Why a key may have been written that is none of these.
 std::string hint(const std::string& name, const std::vector<std::string>& names, Units units) {
   const bool mm = units == Units::mm;
   const std::string in_these = mm ? key_in(units, name).name : key_in_si(Units::mm, name);
-  if (in_these != name && std::find(names.begin(), names.end(), in_these) != names.end())
+  if (in_these != name && std::ranges::find(names, in_these) != names.end())
     return mm ? fmt::format("; under units = \"mm\" it is {}", in_these)
               : fmt::format("; {}, or units = \"mm\" at the top of the file", in_these);
-  const std::string_view usual = usual_name(name);
-  return usual.empty() ? did_you_mean(name, names) : fmt::format("; {}", with_keys_in(units, std::string(usual)));
+  for (const auto& [usual, words] : usual_names)
+    if (usual == name) return fmt::format("; {}", with_keys_in(units, std::string(words)));
+  return did_you_mean(name, names);
 }
 
 void refuse_unknown_keys(const TomlValue& value, const toml::table& table, std::span<const Key> keys) {
@@ -53,7 +85,7 @@ void refuse_unknown_keys(const TomlValue& value, const toml::table& table, std::
   for (const Key& key : keys) names.push_back(key_in(value.units, key.name).name);
   for (const auto& [key, node] : table) {
     const std::string name(key.str());
-    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+    if (std::ranges::find(names, name) != names.end()) continue;
     const auto begin = key.source().begin;
     throw InputError(SourceLocation{value.file, static_cast<int>(begin.line), static_cast<int>(begin.column)},
                      fmt::format("{}: unknown key (allowed: {}){}", join_key(value.key, name), fmt::join(names, ", "),
@@ -127,6 +159,11 @@ void refuse(const TomlValue& value, const std::string& what, const std::string& 
                    key + with_keys_in(value.units, fmt::format("{} (allowed: {}){}", what, allowed, hint)));
 }
 
+void missing(const TomlValue& table, const std::string& key, const std::string& allowed) {
+  const std::string name = join_key(table.key, key_in(table.units, key).name);
+  refuse({table.node, name, table.file, table.units}, "is missing", allowed);
+}
+
 SourceLocation location_of(const TomlValue& value) {
   const auto begin = value.node->source().begin;
   return {value.file, static_cast<int>(begin.line), static_cast<int>(begin.column)};
@@ -158,13 +195,17 @@ bool as_flag(const TomlValue& value) {
   return flag->get();
 }
 
-std::string as_choice(const TomlValue& value, const std::vector<std::string>& names) {
+std::size_t as_choice_number(const TomlValue& value, const std::vector<std::string>& names) {
   const std::string allowed = fmt::format("{}", fmt::join(names, ", "));
   if (!value.node->is_string()) wrong_type(value, allowed);
   const std::string& name = value.node->ref<std::string>();
-  if (std::find(names.begin(), names.end(), name) == names.end())
-    refuse(value, fmt::format("'{}' is not known", name), allowed, did_you_mean(name, names));
-  return name;
+  const auto at = std::ranges::find(names, name);
+  if (at == names.end()) refuse(value, fmt::format("'{}' is not known", name), allowed, did_you_mean(name, names));
+  return static_cast<std::size_t>(at - names.begin());
+}
+
+std::string as_choice(const TomlValue& value, const std::vector<std::string>& names) {
+  return names[as_choice_number(value, names)];
 }
 
 std::vector<TomlValue> as_list(const TomlValue& value, const std::string& words) {
@@ -227,8 +268,7 @@ TomlTable::TomlTable(const TomlValue& value, std::span<const Key> keys) : value_
   if (!table) wrong_type(value, "a table");
   refuse_unknown_keys(value, *table, keys);
   for (const Key& key : keys)
-    if (const std::string name = key_in(value.units, key.name).name; !key.otherwise && !table->contains(name))
-      refuse({value.node, join_key(value.key, name), value.file, value.units}, "is missing", key.allowed);
+    if (!key.otherwise && !find(key.name)) missing(value, key.name, key.allowed);
 }
 
 std::optional<TomlValue> TomlTable::find(const std::string& key) const {

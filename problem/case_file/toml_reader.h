@@ -49,6 +49,9 @@ inline constexpr Range not_negative{"a finite number >= 0", 0, std::numeric_limi
 [[noreturn]] void refuse(const TomlValue& value, const std::string& what, const std::string& allowed,
                          const std::string& hint = "");
 
+/// Refuses a table without a key.
+[[noreturn]] void missing(const TomlValue& table, const std::string& key, const std::string& allowed);
+
 SourceLocation location_of(const TomlValue& value);
 
 inline constexpr std::size_t largest_case_file = 4 << 20;  ///< [bytes]
@@ -64,7 +67,8 @@ int as_whole(const TomlValue& value, int low, int high);  ///< an integer from `
 bool as_flag(const TomlValue& value);
 std::string as_text(const TomlValue& value);  ///< not empty
 std::string as_choice(const TomlValue& value, const std::vector<std::string>& names);
-std::vector<TomlValue> as_list(const TomlValue& value, const std::string& words);  ///< not empty
+std::size_t as_choice_number(const TomlValue& value, const std::vector<std::string>& names);  ///< of the name
+std::vector<TomlValue> as_list(const TomlValue& value, const std::string& words);             ///< not empty
 std::vector<TomlValue> as_list_of(std::size_t count, const TomlValue& value, const std::string& words);
 Vec3 as_vector(const TomlValue& value, const Range& range = any_number);
 Vec3 as_direction(const TomlValue& value);  ///< not zero; returned with length 1

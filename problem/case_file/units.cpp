@@ -26,8 +26,8 @@ bool is_part_of_a_key(char c) { return std::isalnum(static_cast<unsigned char>(c
 
 bool is_key(std::string_view name) {
   const auto tables = key_tables();
-  return std::any_of(tables.begin(), tables.end(), [&](const KeyTable& table) {
-    return std::any_of(table.keys.begin(), table.keys.end(), [&](const Key& key) { return key.name == name; });
+  return std::ranges::any_of(tables, [&](const KeyTable& table) {
+    return std::ranges::any_of(table.keys, [&](const Key& key) { return key.name == name; });
   });
 }
 

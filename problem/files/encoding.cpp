@@ -46,24 +46,11 @@ std::string from_base64(std::string_view text) {
 }
 
 std::string xml_escaped(std::string_view text) {
+  constexpr std::string_view reserved = "&<>\"", names[] = {"&amp;", "&lt;", "&gt;", "&quot;"};
   std::string out;
-  for (char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
+  for (const char c : text) {
+    const std::size_t at = reserved.find(c);
+    at < reserved.size() ? out += names[at] : out += c;
   }
   return out;
 }

@@ -14,7 +14,7 @@ inline std::string file_name(std::string name) {
     return static_cast<unsigned char>(c) <= ' ' || c == 0x7f ||
            std::string_view("/\\:*?\"<>|").find(c) != std::string::npos;
   };
-  std::replace_if(name.begin(), name.end(), special, '_');
+  std::ranges::replace_if(name, special, '_');
   if (name.starts_with('.')) name.front() = '_';
   return name;
 }

@@ -9,8 +9,8 @@
 #include <system_error>
 #include <vector>
 
-#include "problem/files/checked_file.h"
-#include "problem/files/checksum.h"
+#include "problem/files/files.h"
+#include "problem/files/new_file.h"
 #include "problem/system/streams.h"
 
 namespace springproof {
@@ -52,7 +52,7 @@ void remove_oldest(const fs::path& folder, const KeptKind& kind) {
     all += e.bytes;
     entries.push_back(std::move(e));
   }
-  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.used < b.used; });
+  std::ranges::sort(entries, [](const Entry& a, const Entry& b) { return a.used < b.used; });
   for (const Entry& e : entries) {
     if (all <= most_bytes) return;
     if (fs::remove(e.file, error)) all -= e.bytes;

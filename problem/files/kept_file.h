@@ -12,7 +12,7 @@ namespace springproof {
 struct KeptKind {
   std::string name;     ///< begins the file's name, and is said to users: "mesh"
   std::string ending;   ///< of the file's name: ".cbor"
-  std::string heading;  ///< of the file (checked_file.h)
+  std::string heading;  ///< of the file (new_file.h)
 };
 
 /// A place for one result among others of its kind in a folder.  All of it is optional: what cannot be read is no

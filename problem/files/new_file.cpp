@@ -9,6 +9,9 @@
 #include <random>
 #include <system_error>
 
+#include "problem/files/files.h"
+#include "problem/system/input_error.h"
+
 namespace springproof {
 namespace {
 
@@ -28,6 +31,10 @@ bool write_all(int descriptor, std::string_view bytes) {
     bytes.remove_prefix(static_cast<std::size_t>(written < 0 ? 0 : written));
   }
   return true;
+}
+
+NewFile checked(const std::filesystem::path& file, std::string_view heading, std::string_view content) {
+  return NewFile(file, {heading, checksum(content), "\n", content});
 }
 
 }  // namespace
@@ -81,6 +88,29 @@ bool NewFile::create() {
   close(claim);
   replace();
   return true;
+}
+
+void write_checked(const std::filesystem::path& file, std::string_view heading, std::string_view content) {
+  checked(file, heading, content).replace();
+}
+
+bool create_checked(const std::filesystem::path& file, std::string_view heading, std::string_view content) {
+  return checked(file, heading, content).create();
+}
+
+std::string read_checked(const std::filesystem::path& file, std::string_view heading) try {
+  std::string bytes = read_named_file(file, "");
+  const std::size_t end = bytes.find('\n');
+  if (end == std::string::npos || !bytes.starts_with(heading)) refuse_damaged(file);
+  const std::string_view content = std::string_view(bytes).substr(end + 1);
+  if (std::string_view(bytes).substr(heading.size(), end - heading.size()) != checksum(content)) refuse_damaged(file);
+  return bytes.erase(0, end + 1);
+} catch (const InputError&) {
+  refuse_damaged(file);
+}
+
+void refuse_damaged(const std::filesystem::path& file) {
+  throw DamagedFile(fmt::format("{} is damaged", file.string()));
 }
 
 }  // namespace springproof

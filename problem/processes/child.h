@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -63,6 +64,11 @@ inline constexpr int not_started = 127;
 /// Runs the program to its end, at most for its time limit; it does not outlive the calling thread.
 /// @throws std::runtime_error if it cannot be started.
 ChildEnd run_child(const Child& child);
+
+/// Returns what `work` returned, called in a child process.  interrupt_children() ends it.
+/// @throws std::runtime_error with the message of the exception thrown by the work, or with how the process ended
+/// (memory, signal).
+std::string in_child(const std::function<std::string()>& work);
 
 /// Sends SIGTERM to every running child; may be called in a signal handler.
 void interrupt_children();

@@ -27,8 +27,7 @@ namespace fs = std::filesystem;
 // A run: the fields, each ended by a zero, and one zero more.  The answer: a ChildEnd, as it is in memory.
 bool send_all(int socket, const char* bytes, std::size_t count) {
   while (count > 0) {
-    const ssize_t sent = send(socket, bytes, count, MSG_NOSIGNAL);
-    if (sent < 0 && errno == EINTR) continue;
+    const ssize_t sent = TEMP_FAILURE_RETRY(send(socket, bytes, count, MSG_NOSIGNAL));
     if (sent <= 0) return false;
     bytes += sent;
     count -= static_cast<std::size_t>(sent);
@@ -38,8 +37,7 @@ bool send_all(int socket, const char* bytes, std::size_t count) {
 
 bool receive_all(int socket, void* to, std::size_t count) {
   for (char* at = static_cast<char*>(to); count > 0;) {
-    const ssize_t got = recv(socket, at, count, 0);
-    if (got < 0 && errno == EINTR) continue;
+    const ssize_t got = TEMP_FAILURE_RETRY(recv(socket, at, count, 0));
     if (got <= 0) return false;
     at += got;
     count -= static_cast<std::size_t>(got);
@@ -84,8 +82,7 @@ class Server {
   ~Server() {
     slot_.reset();
     close(socket_);
-    while (waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) {
-    }
+    TEMP_FAILURE_RETRY(waitpid(pid_, nullptr, 0));
   }
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
@@ -96,8 +93,7 @@ class Server {
   bool run(const std::string& fields, ChildEnd& end) {
     if (send_all(socket_, fields.data(), fields.size()) && receive_all(socket_, &end, sizeof end)) return true;
     siginfo_t info{};
-    while (waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOWAIT) < 0 && errno == EINTR) {
-    }
+    TEMP_FAILURE_RETRY(waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOWAIT));
     end = {};
     end.kind = info.si_code == CLD_EXITED ? ChildEnd::exited : ChildEnd::killed;
     end.status = end.kind == ChildEnd::exited && info.si_status == 0 ? not_started : info.si_status;
@@ -122,7 +118,7 @@ std::vector<std::unique_ptr<Server>> idle;
 
 std::unique_ptr<Server> idle_server(const fs::path& program) {
   const std::lock_guard lock(idle_mutex);
-  const auto found = std::find_if(idle.begin(), idle.end(), [&](const auto& s) { return s->program() == program; });
+  const auto found = std::ranges::find_if(idle, [&](const auto& s) { return s->program() == program; });
   if (found == idle.end()) return nullptr;
   std::unique_ptr<Server> server = std::move(*found);
   idle.erase(found);

@@ -1,7 +1,9 @@
 #include "problem/system/progress.h"
 
 #include <chrono>
+#include <condition_variable>
 #include <fstream>
+#include <mutex>
 #include <utility>
 
 namespace springproof::progress {
@@ -55,20 +57,12 @@ Listener into_file(const std::filesystem::path& file) {
 
 Relay::Relay(std::filesystem::path file) : file_(std::move(file)) {
   if (!current) return;
-  thread_ = std::thread([this, to = *current] {
-    std::unique_lock lock(mutex_);
-    while (!ended_.wait_for(lock, look_again, [this] { return end_; })) pass_on(to);
+  thread_ = std::jthread([this, to = *current](const std::stop_token& ended) {
+    std::mutex mutex;
+    std::unique_lock lock(mutex);
+    std::condition_variable_any wake;
+    while (!wake.wait_for(lock, ended, look_again, [&] { return ended.stop_requested(); })) pass_on(to);
   });
-}
-
-Relay::~Relay() {
-  if (!thread_.joinable()) return;
-  {
-    const std::lock_guard lock(mutex_);
-    end_ = true;
-  }
-  ended_.notify_one();
-  thread_.join();
 }
 
 void Relay::pass_on(const Listener& to) {

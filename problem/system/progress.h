@@ -2,10 +2,8 @@
 // is negligible.
 #pragma once
 
-#include <condition_variable>
 #include <filesystem>
 #include <functional>
-#include <mutex>
 #include <string>
 #include <thread>
 #include <type_traits>
@@ -53,19 +51,13 @@ Listener into_file(const std::filesystem::path& file);
 class Relay {
  public:
   explicit Relay(std::filesystem::path file);
-  ~Relay();
-  Relay(const Relay&) = delete;
-  Relay& operator=(const Relay&) = delete;
 
  private:
   void pass_on(const Listener& to);
 
   const std::filesystem::path file_;
   std::string last_;
-  std::mutex mutex_;
-  std::condition_variable ended_;
-  bool end_ = false;
-  std::thread thread_;
+  std::jthread thread_;  ///< last: it ends before what it uses
 };
 
 }  // namespace springproof::progress

@@ -3,9 +3,9 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include "comparisons/sweep/part_file.h"
+#include "comparisons/sweep/sweep.h"
 #include "fuzz/reader.h"
-#include "problem/files/checksum.h"
+#include "problem/files/files.h"
 
 namespace {
 

@@ -7,7 +7,7 @@
 
 #include "comparisons/engines/engine_files.h"
 #include "problem/case_file/experiment.h"
-#include "problem/files/named_files.h"
+#include "problem/files/files.h"
 #include "problem/system/streams.h"
 
 namespace springproof {

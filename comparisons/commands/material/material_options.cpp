@@ -38,10 +38,10 @@ void add_moduli(CLI::App& command, Moduli& moduli) {
   for (const ModulusName& modulus : modulus_names) {
     const std::string name = modulus.key;
     const Key& key = *std::find_if(keys.begin(), keys.end(), [&](const Key& k) { return k.name == name; });
-    const std::string unit = unit_of(key), shorter = modulus.symbol ? modulus.symbol : "";
+    const std::string shorter = modulus.symbol ? modulus.symbol : "";
     const std::string alias = shorter.empty() ? "" : (shorter.size() == 1 ? ",-" : ",--") + shorter;
     command.add_option(option_named(name.substr(0, name.rfind("_Pa"))) + alias, moduli.*modulus.member,
-                       key.what + (unit.empty() ? "" : " [" + unit + "]"));
+                       std::string(key.what) + (name.ends_with("_Pa") ? " [Pa]" : ""));
   }
 }
 

@@ -1,7 +1,7 @@
 // Which model the headline names, how sure of the reference it is, and what is no success.
 #include <gtest/gtest.h>
 
-#include "problem/case_file/external.h"
+#include "problem/case_file/experiment.h"
 #include "unit/comparisons/report/headline_cases.h"
 
 namespace springproof::closest_model_test {

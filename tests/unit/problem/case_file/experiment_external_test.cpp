@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "problem/case_file/external.h"
+#include "problem/case_file/experiment.h"
 #include "support/case_file.h"
 
 namespace springproof::experiment_external_test {

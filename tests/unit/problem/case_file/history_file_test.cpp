@@ -75,7 +75,6 @@ TEST_F(HistoryFile, IsReadLineByLine) {
   EXPECT_EQ(samples[1].time, 1);
   EXPECT_EQ(samples[1].value, -6.2);
   EXPECT_EQ(samples[2].u, 0.02);
-  EXPECT_EQ(samples[2].line, 4);
 }
 
 TEST_F(HistoryFile, IsRefusedAtItsLine) {

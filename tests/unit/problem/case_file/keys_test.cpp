@@ -202,18 +202,6 @@ TEST(KeysOfCaseFiles, StandOnceInTheirTable) {
   }
 }
 
-TEST(KeysOfCaseFiles, EndWithTheirUnit) {
-  for (const auto& [name, unit] : Values{{"density_kg_m3", "kg/m³"},
-                                         {"gravity_m_s2", "m/s²"},
-                                         {"spin_rad_s", "rad/s"},
-                                         {"velocity_m_s", "m/s"},
-                                         {"damping_1_s", "1/s"},
-                                         {"duration_s", "s"},
-                                         {"at_m", "m"},
-                                         {"poisson_ratio", ""}})
-    EXPECT_EQ(unit_of({name.c_str(), "", "", nullptr, ""}), unit) << name;
-}
-
 TEST(KeysOfCaseFiles, AreOfTablesThatThereAre) { EXPECT_THROW(keys_of("bodies"), std::logic_error); }
 
 }  // namespace

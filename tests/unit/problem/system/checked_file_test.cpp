@@ -1,5 +1,5 @@
 // Files that say themselves whether they are whole.
-#include "problem/files/checked_file.h"
+#include "problem/files/new_file.h"
 
 #include <gtest/gtest.h>
 #include <linux/audit.h>

@@ -10,7 +10,6 @@
 #include <fstream>
 #include <system_error>
 
-#include "problem/files/named_files.h"
 #include "problem/processes/child.h"
 #include "support/case_file.h"
 

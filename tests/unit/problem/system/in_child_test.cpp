@@ -1,4 +1,3 @@
-#include "problem/processes/in_child.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
