@@ -8,13 +8,13 @@
 #include <set>
 
 #include "comparisons/judge/validation.h"
-#include "comparisons/prepare/input_checksum.h"
+#include "comparisons/prepare/prepared_case.h"
 #include "comparisons/results/records_json.h"
 #include "comparisons/run/case_run.h"
 #include "comparisons/run/prepare.h"
 #include "fem_reference/exchange/reference.h"
 #include "problem/case_file/measures.h"
-#include "problem/files/checksum.h"
+#include "problem/files/files.h"
 #include "problem/system/progress.h"
 
 namespace springproof {
@@ -129,10 +129,7 @@ const VariedRun& ModelValues::run(const Numbers& numbers, std::size_t lattice, c
                               cells_text(lattices_[lattice], " x ")));
   const RunKeeper keeper(folder_, stamp_,
                          [this](const RunCost&, std::optional<double> took) { ++(took ? runs_ : kept_); });
-  return runs_of_[name] = keeper.run(
-             name, {}, [&] { return made(case_at(changed, lattice), load_case, input); },
-             [](const VariedRun& r) { return nlohmann::json(r); },
-             [](const nlohmann::json& kept) { return kept.get<VariedRun>(); });
+  return runs_of_[name] = keeper.run(name, {}, [&] { return made(case_at(changed, lattice), load_case, input); });
 }
 
 std::vector<std::optional<double>> ModelValues::at(const Numbers& numbers, std::size_t lattice,

@@ -1,12 +1,11 @@
-#include "comparisons/run/case_motion.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <limits>
 
-#include "comparisons/models/motion_measured.h"
+#include "comparisons/models/motion_run.h"
 #include "comparisons/results/picture.h"
+#include "comparisons/run/part_run.h"
 #include "meshes/volume.h"
 #include "problem/case_file/measures.h"
 
@@ -17,7 +16,7 @@ namespace {
 bool is_at_rest(const HistoryRecord& history, const IsotropicMaterial& material, const Mesh& mesh) {
   const std::vector<double>& kinetic = *series(history, "kinetic_energy");
   const double digits = std::numeric_limits<double>::epsilon() * material.youngs_modulus * volume(mesh, mesh.nodes);
-  return *std::max_element(kinetic.begin(), kinetic.end()) < digits;
+  return *std::ranges::max_element(kinetic) < digits;
 }
 
 }  // namespace
@@ -25,7 +24,7 @@ bool is_at_rest(const HistoryRecord& history, const IsotropicMaterial& material,
 const Reference* reference_at_rest(const PartRun& run, std::size_t lattice, const std::string& model) {
   const auto& models = run.experiment().models;
   const auto moves = [&](const auto& m) { return m.label == model && m.in_motion; };
-  if (run.in_time && std::any_of(models.begin(), models.end(), moves)) return nullptr;
+  if (run.in_time && std::ranges::any_of(models, moves)) return nullptr;
   return run.reference[lattice] ? &*run.reference[lattice] : nullptr;
 }
 
@@ -76,32 +75,27 @@ void run_motion_reference(PartRun& run) {
 }
 
 void add_motion_rows(PartRun& run, const Row& blank, const HistoryRecord& history) {
-  const auto add = [&](Row row, const std::string& measure, double value) {
-    if (!wanted(measure, run.experiment().measures)) return;
-    row.measure = measure;
-    row.unit = unit_of(measure);
-    row.value = value;
-    run.part.rows.push_back(row);
-  };
   for (const std::string& measure : rows_of_measure("motion", run.experiment())) {
     const std::string name = measure.substr(measure.find('.') + 1);
     const auto measured = history.measured.find(name);
     if (measured == history.measured.end()) continue;
     Row row = blank;
+    row.value = measured->second;
     if (run.in_time && run.in_time->measured.contains(name)) {
       const ReferenceValue& r = run.in_time->measured.at(name);
       row.reference = r.value;
       row.reference_uncertainty = r.uncertainty;
-      row.error = measured->second - r.value;
+      row.error = row.value - r.value;
     }
-    add(row, measure, measured->second);
+    add_row(run, row, measure);
   }
   if (!run.in_time) return;
   Row row = blank;
   row.reference = 0.0;
   row.reference_uncertainty = run.in_time->uncertainty;
-  row.error = history.measured.at("motion_error");
-  add(row, "motion_error", *row.error);
+  row.value = history.measured.at("motion_error");
+  row.error = row.value;
+  add_row(run, row, "motion_error");
 }
 
 }  // namespace springproof

@@ -1,5 +1,3 @@
-#include "comparisons/run/case_reference.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -9,13 +7,9 @@
 #include "comparisons/judge/deformation.h"
 #include "comparisons/judge/measures.h"
 #include "comparisons/models/motion_reference.h"
-#include "comparisons/reference/convergence_cause.h"
 #include "comparisons/reference/reference_grids.h"
 #include "comparisons/reference/voxel_reference.h"
-#include "comparisons/run/case_motion.h"
-#include "comparisons/run/case_rows.h"
-#include "comparisons/run/model_samples.h"
-#include "comparisons/run/stress_rows.h"
+#include "comparisons/run/part_run.h"
 
 namespace springproof {
 namespace {
@@ -39,7 +33,7 @@ std::string first_verdict(const PartRun& run, const NodalVectors& coarsest) {
     errors.emplace_back(weighted_norm(difference, volumes) / scale, e.models[m].label);
   }
   if (errors.empty()) return {};
-  std::sort(errors.begin(), errors.end());
+  std::ranges::sort(errors);
   constexpr std::size_t most_named = 4;
   std::vector<std::string> words;
   for (std::size_t i = 0; i < std::min(most_named, errors.size()); ++i)
@@ -78,11 +72,9 @@ void add_stress_rows(PartRun& run) {
   for (const ReferenceRecord& r : run.part.references)
     if (r.measure.starts_with("stress.")) {
       Row row = blank_row(run, run.key("fem_" + r.element, r.cells.back()), run.experiment().kinematics);
-      row.measure = r.measure;
       row.value = r.value;
-      row.unit = r.unit;
       row.reference_uncertainty = r.uncertainty;
-      run.part.rows.push_back(row);
+      add_row(run, row, r.measure);
     }
 }
 

@@ -1,11 +1,9 @@
-#include "comparisons/run/case_rows.h"
-
 #include <cmath>
 #include <set>
 
 #include "comparisons/judge/measures.h"
 #include "comparisons/reference/reference_grids.h"
-#include "comparisons/run/case_motion.h"
+#include "comparisons/run/part_run.h"
 #include "problem/case_file/measures.h"
 
 namespace springproof {
@@ -52,16 +50,13 @@ std::set<std::string> measures_in(const std::vector<std::map<std::string, double
 void add_distances(PartRun& run, const Row& blank, const std::vector<std::map<std::string, double>>& samples,
                    const std::map<std::string, double>& uncertainty, const std::string& reaction) {
   for (const std::string& measure : measures_in(samples)) {
-    if (!wanted(measure, run.experiment().measures)) continue;
     Row row = blank;
-    row.measure = measure;
     set_value(samples, measure, row);
-    row.unit = unit_of(measure);
     row.reference = 0.0;
     row.reference_uncertainty = uncertainty.at(measure);
     row.error = row.value;
     if (measure == "reaction_error") row.of = reaction;
-    run.part.rows.push_back(row);
+    add_row(run, row, measure);
   }
 }
 
@@ -74,16 +69,20 @@ Row blank_row(const PartRun& run, const RunKey& key, const std::string& kinemati
   return row;
 }
 
+void add_row(PartRun& run, Row row, const std::string& measure) {
+  if (!wanted(measure, run.experiment().measures)) return;
+  row.measure = measure;
+  row.unit = unit_of(measure);
+  run.part.rows.push_back(std::move(row));
+}
+
 void add_rows(PartRun& run, std::size_t lattice, const std::string& model, const std::string& kinematics,
               const std::vector<NodalVectors>& u, const std::vector<std::map<std::string, double>>& scalars) {
   const auto* reference = reference_at_rest(run, lattice, model);
   const Row blank = blank_row(run, run.key(model, lattice), kinematics);
   for (const std::string& measure : measures_in(scalars)) {
-    if (!wanted(measure, run.experiment().measures)) continue;
     Row row = blank;
-    row.measure = measure;
     set_value(scalars, measure, row);
-    row.unit = unit_of(measure);
     if (is_deviation(measure)) row.error = row.value;
     if (reference && reference->scalars.contains(measure) && comparable(run.prepared, measure)) {
       const ReferenceValue& r = reference->scalars.at(measure);
@@ -91,7 +90,7 @@ void add_rows(PartRun& run, std::size_t lattice, const std::string& model, const
       row.reference_uncertainty = r.uncertainty;
       row.error = row.value - r.value;
     }
-    run.part.rows.push_back(row);
+    add_row(run, row, measure);
   }
   if (!reference) return;
   // The nodal uncertainty of the reference, expressed in the same measures.

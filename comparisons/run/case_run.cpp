@@ -1,25 +1,28 @@
 #include "comparisons/run/case_run.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
 #include "comparisons/judge/line_measure.h"
 #include "comparisons/judge/measures.h"
 #include "comparisons/models/external.h"
-#include "comparisons/models/external_points.h"
 #include "comparisons/models/frequencies.h"
 #include "comparisons/reference/reference_grids.h"
 #include "comparisons/reference/voxel_reference.h"
 #include "comparisons/results/picture.h"
-#include "comparisons/run/case_motion.h"
-#include "comparisons/run/case_reference.h"
-#include "comparisons/run/case_rows.h"
-#include "comparisons/run/cut_extrapolation.h"
-#include "comparisons/run/model_samples.h"
-#include "comparisons/run/stress_rows.h"
-#include "comparisons/run/varied_runs.h"
+#include "comparisons/results/records_json.h"
+#include "comparisons/run/expected_runs.h"
+#include "comparisons/run/part_run.h"
+#include "comparisons/run/prepare.h"
+#include "meshes/mesher/mesher.h"
 #include "meshes/voxels/cells_apart.h"
 #include "msm/statics/equilibrium.h"
-#include "problem/case_file/external.h"
 #include "problem/case_file/measures.h"
 #include "problem/files/files.h"
+#include "problem/processes/child.h"
+#include "problem/system/input_error.h"
 
 namespace springproof {
 namespace {
@@ -59,7 +62,7 @@ void add_splits(PartRun& run, std::size_t lattice, const std::string& model, con
   const auto& voxels = run.voxels[lattice];
   if (!reference || !voxels) return;
   for (ErrorSplit& split : split_error(run.prepared, run.prepared.lattices[lattice], run.key(model, lattice), *voxels,
-                                       {reference->field, reference->scalars, reference->scale}, u, scalars))
+                                       *reference, u, scalars))
     run.part.splits.push_back(std::move(split));
 }
 
@@ -78,15 +81,6 @@ void add_splits_of_cut_cells(PartRun& run, std::size_t lattice, std::size_t numb
   run.part.splits.resize(first);
   add_splits(run, lattice, label, u, scalars);
   for (std::size_t s = 0; s < of_cubes.size(); ++s) without_staircase(of_cubes[s], run.part.splits[first + s]);
-}
-
-/// The share of the load that a model bears, of models without a result too.
-void add_stable_load(PartRun& run, Row row, double load_reached) {
-  row.measure = "stable_load";
-  if (!wanted(row.measure, run.experiment().measures)) return;
-  row.unit = unit_of(row.measure);
-  row.value = load_reached;
-  run.part.rows.push_back(row);
 }
 
 /// As rows and runs of models name it.
@@ -159,7 +153,11 @@ void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
   std::vector<std::map<std::string, double>> scalars;
   for (const ModelSample& sample : samples) {
     run.part.runs.push_back(model_run(run, lattice, number, sample));
-    if (sample.stability) add_stable_load(run, blank_row(run, key, kind), sample.stability->load_reached);
+    if (sample.stability) {  // of models without a result too
+      Row row = blank_row(run, key, kind);
+      row.value = sample.stability->load_reached;
+      add_row(run, row, "stable_load");
+    }
     if (!sample.state.ok) continue;
     scalars.push_back(sample.scalars);
     if (fields.empty()) add_first_sample(run, lattice, number, sample, scalars.front());
@@ -179,19 +177,44 @@ void run_model(PartRun& run, std::size_t lattice, std::size_t number) {
   add_splits_of_cut_cells(run, lattice, number, fields, scalars);
 }
 
-/// The limits of models of cut cells as rows of their own; the last step is stated as the spread.
+/// Adds the limits of models of cut cells from their two finest lattices as rows of their own: extrapolated to an edge
+/// of zero as errors that fall with the edge, which those of notches, creases and parts few cells thick do, or with the
+/// estimated error of refined lattices; whole cubes have no such limit, as their staircase jumps.  The last step is
+/// stated as the spread.  Nothing for a model with one lattice, or two whose edges differ by less than least_ratio.
 void add_extrapolated(PartRun& run) {
-  for (const ExtrapolatedModel& e : extrapolate_cut_cells(run.prepared, run.cut_states)) {
+  const PreparedCase& prepared = run.prepared;
+  const auto edge = [&](const CutState* s) { return prepared.lattices[s->lattice].error_scale(); };
+  for (std::size_t model = 0; model < prepared.models.size(); ++model) {
+    std::vector<const CutState*> states;
+    for (const CutState& s : run.cut_states)
+      if (s.model == model) states.push_back(&s);
+    std::ranges::sort(states, [&](const auto* a, const auto* b) { return edge(a) < edge(b); });
+    if (states.size() < 2 || edge(states[1]) < least_ratio * edge(states[0])) continue;
+    const CutState &fine = *states[0], &coarse = *states[1];
+    const double h = edge(&fine), H = edge(&coarse), factor = h / (H - h);
+    const NodalVectors from_coarse =
+        displacement_at(cells_of(prepared.lattices[coarse.lattice], prepared.models[model]), coarse.displacement,
+                        prepared.lattices[fine.lattice].mesh->nodes);
+    std::map<std::string, double> scalars, steps;
+    for (const auto& [measure, value] : fine.scalars) {
+      if (measure == "promised_error") continue;  // what the limit is in proportion to: 0
+      const double step = factor * (value - coarse.scalars.at(measure));
+      scalars[measure] = value + step;
+      steps[measure] = std::abs(step);
+    }
+    const std::string label = run.experiment().models[model].label + extrapolated_suffix;
     const std::size_t first = run.part.rows.size();
-    add_rows(run, e.lattice, e.label, "linear", {e.field}, {e.scalars});
+    add_rows(run, fine.lattice, label, "linear", {fine.field + factor * (fine.field - from_coarse)}, {scalars});
     for (std::size_t r = first; r < run.part.rows.size(); ++r)
-      if (const auto step = e.step.find(run.part.rows[r].measure); step != e.step.end())
+      if (const auto step = steps.find(run.part.rows[r].measure); step != steps.end())
         run.part.rows[r].spread = step->second;
-    Run record = of_run<Run>(run.key(e.label, e.lattice));
+    Run record = of_run<Run>(run.key(label, fine.lattice));
     record.kind = "msm";
     record.kinematics = "linear";
     record.ok = true;
-    record.solver = e.from;
+    record.solver = prepared.lattices[fine.lattice].estimated > 0
+                        ? fmt::format("from estimated errors of {:.3g} and {:.3g}", H, h)
+                        : fmt::format("from edges of {:.4g} and {:.4g} m", H, h);
     run.part.runs.push_back(record);
   }
 }
@@ -237,21 +260,44 @@ void add_fem(PartRun& run, std::size_t lattice) {
   }
 }
 
+/// With an input changed on the coarsest lattice alone; only the rows that are measured, and turns.  A change with
+/// which the case cannot be run is a run without rows, whose message says why.
+VariedRun run_of(const Experiment& e, const Variation& variation, const Experiment& changed) {
+  VariedRun out{e.load_cases[variation.load_case].name, variation.input ? e.inputs[*variation.input].name : "", {}, ""};
+  Part part;
+  try {
+    part = run_part(prepare(changed), 0, {});
+  } catch (const InputError& refused) {
+    out.message = fmt::format("the case is refused: {}", refused.what());
+  }
+  for (const Row& row : part.rows)
+    if (row.measure.starts_with("turn.") ||
+        std::ranges::any_of(e.measured, [&](const auto& m) { return m.quantity == row.measure; }))
+      out.rows.push_back(row);
+  for (const Run& run : part.runs)
+    if (!run.ok && out.message.empty()) out.message = run.model + ": " + run.message;
+  return out;
+}
+
+/// Of the first model, and of the finite elements of the case where only the load case is another.  Each is kept.
+/// @return none for a case without measured values
+std::vector<VariedRun> varied_runs(const Experiment& e, const RunKeeper& keeper) {
+  std::vector<VariedRun> runs;
+  for (const Variation& variation : variations(e)) {
+    if (children_interrupted()) return runs;
+    const Experiment changed = case_of(e, variation);
+    runs.push_back(keeper.run(
+        fmt::format("load-case-{}-input-{}", variation.load_case, variation.input ? *variation.input + 1 : 0),
+        cost_of_variation(changed), [&] { return run_of(e, variation, changed); }));
+  }
+  return runs;
+}
+
 }  // namespace
 
 Part run_part(const PreparedCase& whole, std::size_t setting, const VtuOutput& vtu, const RunKeeper& keeper) {
   const PreparedCase prepared = at_setting(whole, setting);
-  PartRun run{.prepared = prepared,
-              .material = prepared.experiment.body_material(setting),
-              .vtu = vtu,
-              .keeper = keeper,
-              .part = {},
-              .grids = {},
-              .reference = {},
-              .voxels = {},
-              .stress = {},
-              .cut_states = {},
-              .in_time = {}};
+  PartRun run{prepared, prepared.experiment.body_material(setting), vtu, keeper};
   if (!vtu.folder.empty()) std::filesystem::create_directories(vtu.folder);
   for (const LatticeLimit& limit : prepared.limits)
     if (same_poisson_ratio(limit.poisson_ratio, run.material.poisson_ratio)) {

@@ -6,12 +6,11 @@
 #include <limits>
 
 #include "comparisons/models/motion_reference.h"
-#include "comparisons/reference/grid_cost.h"
 #include "comparisons/reference/reference_grids.h"
+#include "comparisons/reference/solve_each.h"
 #include "comparisons/reference/voxel_reference.h"
 #include "comparisons/run/prepare.h"
 #include "meshes/volume.h"
-#include "problem/case_file/external.h"
 
 namespace springproof {
 namespace {
@@ -133,7 +132,7 @@ double cubes_of(const Body& body, std::size_t lattice) {
 }
 
 bool measures_cells(const Experiment& e) {
-  return std::any_of(e.models.begin(), e.models.end(), [&](const ModelChoice& choice) {
+  return std::ranges::any_of(e.models, [&](const ModelChoice& choice) {
     return !is_external(choice) && resolve(choice).coarsened.value_or(e.body.coarsened);
   });
 }
@@ -158,7 +157,7 @@ std::vector<RunCost> expected_variations(const Experiment& e) {
 
 template <class T, class Before>
 void keep_first(std::vector<T>& all, Before before) {
-  if (!all.empty()) all = {*std::min_element(all.begin(), all.end(), before)};
+  if (!all.empty()) all = {*std::ranges::min_element(all, before)};
 }
 
 }  // namespace

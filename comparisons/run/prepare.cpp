@@ -8,24 +8,20 @@
 
 #include "comparisons/judge/measures.h"
 #include "comparisons/models/external.h"
-#include "comparisons/models/fracture_run.h"
-#include "comparisons/models/motion_steps.h"
+#include "comparisons/models/motion_run.h"
 #include "comparisons/prepare/case_checks.h"
-#include "comparisons/prepare/load_resultants.h"
 #include "comparisons/prepare/sampling.h"
 #include "comparisons/prepare/voxel_body.h"
 #include "comparisons/reference/reference_grids.h"
 #include "comparisons/results/records.h"
-#include "comparisons/run/own_models.h"
+#include "comparisons/run/choose_models.h"
 #include "meshes/locate/locate.h"
 #include "meshes/mesher/mesher.h"
 #include "meshes/patches/select_patches.h"
 #include "meshes/regions/mark_regions.h"
 #include "meshes/volume.h"
-#include "msm/exchange/springs_file.h"
 #include "msm/models.h"
 #include "msm/statics/equilibrium.h"
-#include "problem/case_file/external.h"
 #include "problem/case_file/measures.h"
 #include "problem/processes/child.h"
 #include "problem/system/progress.h"
@@ -40,100 +36,12 @@ constexpr double finite_reference_elements = 1000;
 // Largest number of cells of a lattice whose matrices fit into a workstation's memory.
 constexpr double largest_lattice = 4e6;
 
-[[noreturn]] void refuse_model(const Experiment& e, std::size_t number, const std::string& why) {
-  throw InputError(e.models[number].where, "compare.models: " + why);
-}
-
 /// @throws InputError at the model's location in the case, if its options yield no network.
 EmbeddedModel build_chosen(const PreparedCase& prepared, const Lattice& lattice, std::size_t number,
                            const IsotropicMaterial& material) try {
   return build_on(prepared, lattice, prepared.models[number], material, prepared.experiment.models[number].in_motion);
 } catch (const InputError& e) {
-  refuse_model(prepared.experiment, number, e.what());
-}
-
-/// Decides which models take cut cells.
-/// @throws InputError for a model that is to and cannot.
-void choose_cut_cells(PreparedCase& prepared) {
-  const Experiment& e = prepared.experiment;
-  for (std::size_t m = 0; m < prepared.models.size(); ++m) {
-    ModelParameters& p = prepared.models[m];
-    const bool averaged = p.has(Extension::averaging), large = e.model_kinematics() != Kinematics::linear;
-    const char* reason = !has_cut_cells(p.row)                ? "this model has none"
-                         : !e.body.is_voxels()                ? "the body is a block"
-                         : e.fracture                         ? "the body breaks"
-                         : e.models[m].in_motion && !averaged ? "it is to move in time"
-                         : large && !averaged                 ? "the displacements are large"
-                                                              : nullptr;
-    if (reason && p.cut.value_or(false))
-      refuse_model(
-          e, m,
-          fmt::format("{}: cut = true: {} (allowed: lattices of cells in a body of voxels, at rest under small "
-                      "displacements; hybmss_avg also under large ones and in motion)",
-                      p.row.name, reason));
-    p.cut = p.cut.value_or(e.body.cut && !reason);
-  }
-  if (e.body.accuracies.empty()) return;
-  const auto is_cut = [](const ModelParameters& p) { return *p.cut; };
-  if (e.fracture || std::none_of(prepared.models.begin(), prepared.models.end(), is_cut))
-    throw InputError(
-        e.body.where,
-        "body.accuracy: cells of several sizes are for models of cut cells (allowed: no [fracture], and one such "
-        "model)");
-  if (flies(e))
-    throw InputError(e.body.where,
-                     "body.accuracy: cells are halved where the loads strain the body at rest, and nothing holds this "
-                     "one (allowed: a load with displacement_m; or voxels, or voxel_edge_m, alone)");
-}
-
-/// Decides which models take cells that are measured.
-/// @throws InputError for a model that is to and cannot.
-void choose_measured_cells(PreparedCase& prepared) {
-  const Experiment& e = prepared.experiment;
-  std::string reasons;
-  for (std::size_t m = 0; m < prepared.models.size(); ++m) {
-    ModelParameters& p = prepared.models[m];
-    const char* reason = !*p.cut                      ? "its cells are not cut"
-                         : !e.body.accuracies.empty() ? "accuracy makes cells of several sizes"
-                         : p.shift > 0                ? "shift is for averaged springs"
-                         : p.curve.value_or(StrainCurve::hencky) != StrainCurve::hencky
-                             ? "at large strain they follow Hencky's law"
-                             : nullptr;
-    if (reason && p.coarsened.value_or(false))
-      refuse_model(e, m, fmt::format("{}: coarsened = true: {} (allowed: cut cells of one size)", p.row.name, reason));
-    p.coarsened = p.coarsened.value_or(e.body.coarsened && !reason);
-    if (reason) reasons += fmt::format("{}{}: {}", reasons.empty() ? "" : "; ", p.row.name, reason);
-  }
-  const auto is_measured = [](const ModelParameters& p) { return *p.coarsened; };
-  if (e.body.coarsened && std::none_of(prepared.models.begin(), prepared.models.end(), is_measured))
-    throw InputError(e.body.where,
-                     fmt::format("body.coarsened: no model of the case has cells that can be measured ({}; "
-                                 "allowed: one of cut cells)",
-                                 reasons.empty() ? "there is none" : reasons));
-}
-
-/// @throws InputError at options of nodes at random, for a network whose nodes are the vertices of a mesh.
-void check_vertex_options(const PreparedCase& prepared) {
-  if (!prepared.experiment.body.is_voxels()) return;
-  for (std::size_t m = 0; m < prepared.models.size(); ++m) {
-    const ModelChoice& choice = prepared.experiment.models[m];
-    if (!passes_patch_test(prepared.models[m].row)) continue;
-    for (const char* option : {"min_length", "max_length", "nodes_per_m3", "seed", "seeds"})
-      if (choice.options.contains(option))
-        refuse_model(prepared.experiment, m,
-                     fmt::format("{}: {}: the nodes of this network are the vertices of a mesh in any body but a block "
-                                 "(allowed: springs_per_node; the cells' edge sets the mesh)",
-                                 choice.name, option));
-  }
-}
-
-/// Averaged springs and momentum dispersion of finite strain follow the material law of the case.
-void choose_curve(const Experiment& e, ModelParameters& p) {
-  const bool follows = p.has(Extension::averaging) || p.dispersion == Dispersion::finite_strain;
-  if (!follows || p.curve) return;
-  p.curve = StrainCurve::hencky;
-  for (const StrainCurve curve : {StrainCurve::neo_hooke, StrainCurve::neo_hooke_isochoric})
-    if (e.kinematics == name_of(curve)) p.curve = curve;
+  throw InputError(prepared.experiment.models[number].where, fmt::format("compare.models: {}", e.what()));
 }
 
 /// False for a case of motions alone that start from rest: bodies may fly.
@@ -180,7 +88,7 @@ void check_grids_of_reference(PreparedCase& prepared) {
     Mesh mesh =
         mesh_geo(prepared.body.geo, e.body.size, divided(prepared.reference_cells, divisor), {}, volumes_of(e.regions));
     const std::vector<std::string> notes = mark_regions(e.regions, 1, mesh);
-    if (divisor == 1) prepared.body.notes.insert(prepared.body.notes.end(), notes.begin(), notes.end());
+    if (divisor == 1) prepared.body.note(notes);
     select_whole_facets(e.patches, mesh);
     if (divisor == 1 && !e.regions.empty()) prepared.body.of_regions = std::make_shared<Mesh>(std::move(mesh));
   }
@@ -192,8 +100,7 @@ void mark_lattice(PreparedCase& prepared, Mesh& mesh) {
   const Experiment& e = prepared.experiment;
   if (e.regions.empty() || e.models.empty()) return;
   std::vector<std::string> notes = mark_regions(e.regions, 1, mesh);
-  if (prepared.lattices.empty() && e.reference.elements.empty() && !e.reference.in_time)
-    prepared.body.notes.insert(prepared.body.notes.end(), notes.begin(), notes.end());
+  if (prepared.lattices.empty() && e.reference.elements.empty() && !e.reference.in_time) prepared.body.note(notes);
 }
 
 void prepare_blocks(PreparedCase& prepared) {
@@ -257,41 +164,6 @@ void check_masses(const Experiment& e, const Mesh& mesh) {
                         e.masses[m].name, X[0], X[1], X[2], e.body.size[0], e.body.size[1], e.body.size[2]));
 }
 
-/// @throws InputError at a model that is of one material, in a case of several.
-void check_region_models(const PreparedCase& prepared) {
-  const Experiment& e = prepared.experiment;
-  if (e.regions.empty()) return;
-  const bool measures_regions = std::any_of(e.measures.begin(), e.measures.end(),
-                                            [](const auto& m) { return m == "region" || m == "interface"; });
-  for (std::size_t m = 0; m < prepared.models.size(); ++m) {
-    const ModelParameters& p = prepared.models[m];
-    const bool of_file = p.springs && !p.springs->regions.empty();  // whose regions are the case's: check_own_models
-    const bool can = of_file || (has_cut_cells(p.row) && !p.springs && e.body.accuracies.empty());
-    const auto refuse = [&](const char* why) { refuse_model(e, m, e.models[m].label + why); };
-    if (measures_regions && can && !of_file && !*p.cut && !p.has(Extension::averaging))
-      refuse(
-          ": the measures region and interface are of averaged springs (allowed: hybmss_avg, cut cells, or other "
-          "measures)");
-    if (*p.coarsened && measures_regions)
-      refuse(
-          ": coarsened = true: a measured cell is of no region (allowed: without the measures region and interface)");
-    if (*p.coarsened && e.listed.region > 0)
-      refuse(": coarsened = true: cells are measured for one material of each region (allowed: a list in [material])");
-    if (*p.coarsened && e.model_kinematics() == Kinematics::finite)  // at rest or in motion
-      refuse(
-          ": coarsened = true: measured cells of several materials are for small strain at rest (allowed: kinematics = "
-          "\"linear\")");
-    if (is_external(e.models[m]) || can) continue;
-    refuse_model(
-        e, m,
-        fmt::format(
-            "{} is of one material in a body{} (allowed beside [[region]]: lattices of cells of one size without "
-            "momentum dispersion, as hybmss_avg; a springs file of such; or models = [])",
-            e.models[m].label,
-            has_cut_cells(p.row) ? "" : ": at an interface its springs cross, or its nodes have one dilatation"));
-  }
-}
-
 /// Checks patches, loads, models and measures of the case on one lattice.
 void try_lattice(PreparedCase& prepared, const Lattice& lattice) {
   const Experiment& e = prepared.experiment;
@@ -304,7 +176,7 @@ void try_lattice(PreparedCase& prepared, const Lattice& lattice) {
   check_plane(prepared, lattice);
   prepared.sharing = patches_sharing_supports(prepared.loads, mesh, e.model_kinematics());
   if ((needs_supports(e) || !e.reference.elements.empty()) &&
-      std::none_of(prepared.models.begin(), prepared.models.end(), [](const auto& p) { return p.hold_rigid_motions; }))
+      std::ranges::none_of(prepared.models, [](const auto& p) { return p.hold_rigid_motions; }))
     try {
       require_supported(transfer(lattice_loads(prepared), mesh, 1000, e.model_kinematics()), mesh.nodes);
     } catch (const InputError& error) {
@@ -383,18 +255,7 @@ PreparedCase prepare_lattices(const Experiment& experiment) {
     prepared.experiment = experiment;
     prepared.loads = experiment.loads;
     prepared.body.size = experiment.body.size;
-    for (const ModelChoice& choice : experiment.models) {
-      prepared.models.push_back(is_external(choice) ? parameters_of_external(choice) : resolve(choice));
-      choose_curve(experiment, prepared.models.back());
-    }
-    check_own_models(prepared);
-    check_kinematics(experiment, prepared.models);
-    check_fracture_models(experiment, prepared.models);
-    choose_cut_cells(prepared);
-    choose_measured_cells(prepared);
-    check_stresses(experiment, prepared.models);
-    check_region_models(prepared);
-    check_vertex_options(prepared);
+    choose_models(prepared);
     prepared.body.geo = find_geo(experiment.body, experiment.file);
     progress::phase("cutting the body");
     experiment.body.is_voxels() ? prepare_voxel_body(prepared) : prepare_blocks(prepared);

@@ -1,13 +1,10 @@
-#include "comparisons/run/stress_rows.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "comparisons/prepare/sampling.h"
-#include "comparisons/run/case_reference.h"
-#include "comparisons/run/case_rows.h"
+#include "comparisons/run/part_run.h"
 #include "meshes/locate/locate.h"
 #include "meshes/voxels/cells_apart.h"
 #include "problem/case_file/measures.h"
@@ -142,17 +139,13 @@ void add_stress_errors(PartRun& run, const RunKey& key, const std::string& kinem
   const Eigen::Vector3d errors = stress_errors(ours - limit.of_points, limit, volumes),
                         uncertainty = uncertainties(limit, volumes);
   const auto add = [&](const std::string& measure, double value, double reference, double doubt) {
-    if (!wanted(measure, run.experiment().measures)) return;
     Row row = blank_row(run, key, kinematics);
-    row.measure = measure;
-    row.unit = unit_of(measure);
-    row.samples = 1;
     row.value = value;
     row.error = value - reference;
     row.reference = reference;
     row.reference_uncertainty = doubt;
     if (measure == "stress_peak") row.of = place_of(run);
-    run.part.rows.push_back(row);
+    add_row(run, row, measure);
   };
   for (int k = 0; k < 3; ++k) add(error_name(run, k), errors[k], 0, uncertainty[k]);
   if (!limit.peak_is_singular()) add("stress_peak", ours.col(0).maxCoeff(), limit.peak.value, limit.peak.uncertainty);

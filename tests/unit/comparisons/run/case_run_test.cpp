@@ -13,8 +13,8 @@
 #include "comparisons/judge/measures.h"
 #include "comparisons/run/prepare.h"
 #include "comparisons/sweep/folder_lock.h"
-#include "comparisons/sweep/part_file.h"
 #include "comparisons/sweep/suite_results.h"
+#include "comparisons/sweep/sweep.h"
 #include "problem/processes/child.h"
 
 namespace springproof::case_run_test {
