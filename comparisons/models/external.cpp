@@ -7,12 +7,9 @@
 #include <cmath>
 #include <limits>
 
-#include "comparisons/models/external_points.h"
-#include "comparisons/models/scattered.h"
 #include "comparisons/prepare/sampling.h"
 #include "comparisons/reference/reference_grids.h"
 #include "meshes/volume.h"
-#include "problem/case_file/external.h"
 #include "problem/system/nearest_name.h"
 
 namespace springproof {
@@ -54,8 +51,7 @@ std::size_t lattice_for(const PreparedCase& prepared, double points) {
   const auto distance = [&](const Lattice& l) { return std::abs(std::log(double(l.mesh->nodes.rows()) / points)); };
   const auto& all = prepared.lattices;
   return static_cast<std::size_t>(
-      std::min_element(all.begin(), all.end(),
-                       [&](const Lattice& a, const Lattice& b) { return distance(a) < distance(b); }) -
+      std::ranges::min_element(all, [&](const Lattice& a, const Lattice& b) { return distance(a) < distance(b); }) -
       all.begin());
 }
 
@@ -176,7 +172,7 @@ void check_covered(const External& e) {
   };
   for (const Patch& patch : e.mesh().patches) {
     const std::vector<int> nodes = nodes_of(patch);
-    if (std::none_of(nodes.begin(), nodes.end(), [&](int n) { return covered(e.mesh().nodes.row(n).transpose()); }))
+    if (std::ranges::none_of(nodes, [&](int n) { return covered(e.mesh().nodes.row(n).transpose()); }))
       refuse_gap(fmt::format("there is no point near the patch '{}'", patch.name));
   }
   const WantedPoints wanted = wanted_points(e);
@@ -192,7 +188,7 @@ void check_reactions(const External& e) {
   for (const auto& [key, value] : e.choice.options) {
     if (!key.starts_with("force.")) continue;
     const std::string patch = key.substr(6, key.size() - 8);
-    if (std::find(patches.begin(), patches.end(), patch) == patches.end())
+    if (std::ranges::find(patches, patch) == patches.end())
       throw InputError(e.choice.where, fmt::format("external.reaction_N: the body has no patch '{}' (allowed: {}){}",
                                                    patch, fmt::join(patches, ", "), did_you_mean(patch, patches)));
   }
@@ -250,16 +246,10 @@ std::string unit_doubt(const NodalVectors& u, const NodalVectors& reference) {
 }
 
 ModelParameters parameters_of_external(const ModelChoice& choice) {
-  ModelParameters p;
-  p.row = {choice.label,
-           external_model,
-           Topology::file,
-           0,
-           false,
-           Extension::none,
-           false,
-           false,
-           Calibration::shear_modulus};
+  ModelParameters p{};  // without an extension
+  p.row.name = choice.label;
+  p.row.what = external_model;
+  p.row.topology = Topology::file;
   p.cut = false;
   return p;
 }

@@ -1,4 +1,4 @@
-#include "comparisons/models/external_points.h"
+#include "comparisons/models/external.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,7 +11,7 @@
 #include <string>
 #include <string_view>
 
-#include "problem/files/named_files.h"
+#include "problem/files/files.h"
 #include "problem/system/input_error.h"
 #include "problem/system/nearest_name.h"
 #include "problem/system/shortened.h"
@@ -130,7 +130,7 @@ class CsvReader {
   }
 
   CsvColumns columns_of(const std::vector<CsvField>& header, int line) const {
-    if (std::all_of(header.begin(), header.end(), [](const CsvField& f) { return number_in(f.text).has_value(); }))
+    if (std::ranges::all_of(header, [](const CsvField& f) { return number_in(f.text).has_value(); }))
       fail(line, 1, fmt::format("the file has no header: its first line holds numbers (needed: {})", header_words));
     const std::map<std::string, std::size_t> names = names_of(header, line);
     CsvColumns columns;

@@ -55,7 +55,7 @@ Dried dry(const PreparedCase& prepared, const Lattice& lattice, const ModelParam
   run.residual = dried.result.worst_residual;
   run.set_up_seconds = ready - start;
   run.seconds = cpu_seconds() - ready;
-  run.unknowns = 3 * std::count(held.begin(), held.end(), 0);
+  run.unknowns = 3 * std::ranges::count(held, 0);
   run.memory_MiB = peak_memory_MiB();
   return dried;
 }
@@ -116,7 +116,7 @@ std::string picture_of(const Dried& dried, const Fracture& fracture) {
   const double top = network.X.col(2).maxCoeff();
   double length = 0;
   for (const Spring& s : network.springs) length += s.rest_length / static_cast<double>(network.springs.size());
-  const int last = *std::max_element(r.broken_at.begin(), r.broken_at.end());
+  const int last = *std::ranges::max_element(r.broken_at);
   int first = last;
   for (const int at : r.broken_at)
     if (at > 0) first = std::min(first, at);
@@ -172,22 +172,6 @@ void write_springs(const std::filesystem::path& file, const Dried& dried) {
 }
 
 }  // namespace
-
-void check_fracture_models(const Experiment& e, const std::vector<ModelParameters>& models) {
-  if (!e.fracture) return;
-  for (std::size_t m = 0; m < models.size(); ++m) {
-    const ModelParameters& p = models[m];
-    const auto refuse_model = [&](const std::string& what, const std::string& allowed) {
-      throw InputError(e.models[m].where,
-                       fmt::format("compare.models: {} {} (allowed beside [fracture]: {})", p.row.name, what, allowed));
-    };
-    if (!p.has(Extension::none) || p.row.bending_correction || p.row.topology == Topology::hexagonal)
-      refuse_model("has forces that no breaking spring takes away, or is planar",
-                   "msm_18, msm_14, msm_centred, msm_random, hybmss_cf");
-    if (p.seeds > 1) refuse_model("has seeds of its own", "seeds in [fracture]");
-    if (p.hold_rigid_motions) refuse_model("has the option hold_rigid_motions", "a held patch");
-  }
-}
 
 FractureSamples run_fracture_samples(const PreparedCase& prepared, const Lattice& lattice, std::size_t number,
                                      const IsotropicMaterial& material, const std::filesystem::path& vtu) {

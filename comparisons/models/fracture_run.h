@@ -18,9 +18,6 @@ struct FractureSamples {
   CrackRecord cracks;                                  ///< its key is to be set; empty svg: no sample has a result
 };
 
-/// @throws InputError at a model that cannot break: only springs without extensions can.
-void check_fracture_models(const Experiment& experiment, const std::vector<ModelParameters>& models);
-
 /// Dries model `number` of the case on a lattice; sample s has the seed fracture.seed + s, of its thresholds and of its
 /// disordered network.  Writes the springs of the first sample into `vtu` (empty: no file).
 FractureSamples run_fracture_samples(const PreparedCase& prepared, const Lattice& lattice, std::size_t number,

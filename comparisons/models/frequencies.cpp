@@ -15,7 +15,6 @@
 #include "meshes/volume.h"
 #include "msm/dynamics/natural_modes.h"
 #include "msm/embedding/boundary.h"
-#include "problem/case_file/external.h"
 #include "problem/processes/child.h"
 #include "problem/system/progress.h"
 
@@ -29,15 +28,21 @@ constexpr double eigenvalue_order = 4;  // of frequencies with quadratic element
 
 std::string element_of(const PreparedCase& prepared) { return prepared.experiment.body.is_voxels() ? "p2" : "q2"; }
 
-/// Three grids, coarse to fine.
-fem::Request mode_request(const PreparedCase& prepared, const IsotropicMaterial& material, int modes) {
-  const Experiment& e = prepared.experiment;
-  const std::string element = element_of(prepared);
+/// Without grids.
+fem::Request mode_request(const Experiment& e, const IsotropicMaterial& material, int modes) {
   fem::Request request = fem::request_of(e, material);
   request.material = material;
   request.law = "linear";
   request.loads = supports_of(e);
   request.modes = modes;
+  return request;
+}
+
+/// Three grids, coarse to fine.
+fem::Request reference_request(const PreparedCase& prepared, const IsotropicMaterial& material, int modes) {
+  const Experiment& e = prepared.experiment;
+  const std::string element = element_of(prepared);
+  fem::Request request = mode_request(e, material, modes);
   if (e.body.is_voxels()) {
     request.points = prepared.samples.points;
     request.meshes = prepared.body.tetrahedra;
@@ -76,24 +81,16 @@ Eigen::VectorXd weights_of_nodes(const PreparedCase& prepared) {
   return weights;
 }
 
-struct ReferenceModes {
-  std::string form, failure;
-  int rigid_motions = 0;
-  std::vector<ReferenceValue> frequencies;
-  ModeSet finest;  ///< at the nodes of every lattice, one after the other
-};
-
 /// Limits of near frequencies may be in another order than those of the finest grid.
-void put_in_order(ReferenceModes& m) {
-  std::vector<std::size_t> order(m.frequencies.size());
+void put_in_order(FrequencyTable& table) {
+  std::vector<std::size_t> order(table.reference.size());
   std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](auto a, auto b) { return m.frequencies[a].value < m.frequencies[b].value; });
-  const ReferenceModes before = m;
+  std::ranges::stable_sort(order, [&](auto a, auto b) { return table.reference[a].value < table.reference[b].value; });
+  const FrequencyTable before = table;
   for (std::size_t i = 0; i < order.size(); ++i) {
-    m.frequencies[i] = before.frequencies[order[i]];
-    m.finest.frequencies[i] = before.finest.frequencies[order[i]];
-    m.finest.shapes[i] = before.finest.shapes[order[i]];
+    table.reference[i] = before.reference[order[i]];
+    table.shapes.frequencies[i] = before.shapes.frequencies[order[i]];
+    table.shapes.shapes[i] = before.shapes.shapes[order[i]];
   }
 }
 
@@ -134,15 +131,18 @@ ModeSet relaxing_modes(const Relaxation& relaxation, const IsotropicMaterial& ma
   return modes;
 }
 
-ReferenceModes reference_modes(const PreparedCase& prepared, const IsotropicMaterial& material, int modes) try {
-  ReferenceModes out;
+/// A table of the reference alone, its shapes at the nodes of every lattice, one after the other.
+FrequencyTable reference_modes(const PreparedCase& prepared, const IsotropicMaterial& material, int modes) try {
+  FrequencyTable out;
+  out.material = material;
+  out.element = element_of(prepared);
   const auto solved_at = [&](const IsotropicMaterial& solid) {
-    std::vector<fem::Solution> all = solve_each(mode_request(prepared, solid, modes + modes_beside));
+    std::vector<fem::Solution> all = solve_each(reference_request(prepared, solid, modes + modes_beside));
     for (const fem::Solution& s : all)
       if (!s.ok) throw std::runtime_error(fmt::format("{} cells: {}", cells_text(s.grid.cells, " x "), s.message));
     return all;
   };
-  const ElementGrids grids{element_of(prepared), solved_at(material)};
+  const ElementGrids grids{out.element, solved_at(material)};
   out.form = grids.grids[2].form;
   out.rigid_motions = grids.grids[2].rigid_motions;
   std::vector<ModeSet> of_grids;
@@ -153,10 +153,10 @@ ReferenceModes reference_modes(const PreparedCase& prepared, const IsotropicMate
     for (std::size_t g = 0; g < sudden.size(); ++g)
       relax(relaxation, modes_at_nodes(prepared, sudden[g]), weights_of_nodes(prepared), of_grids[g]);
   }
-  out.finest = of_grids[2];
+  out.shapes = of_grids[2];
   std::vector<std::vector<double>> values(modes);
   for (const ModeSet& s : of_grids) {  // modes may cross from grid to grid
-    const auto pairs = pair_modes(out.finest, s, weights_of_nodes(prepared));
+    const auto pairs = pair_modes(out.shapes, s, weights_of_nodes(prepared));
     for (int i = 0; i < modes; ++i) values[i].push_back(s.frequencies[pairs[i].partner.value_or(i)]);
   }
   const TrustedOrders orders{.highest = has_smooth_modes(prepared) ? eigenvalue_order : clamped_order};
@@ -165,11 +165,13 @@ ReferenceModes reference_modes(const PreparedCase& prepared, const IsotropicMate
     limits[fmt::format("frequency.{:03}.value", i + 1)] =
         extrapolate(values[i], solver_noise * values[i][2], orders, ratios_of(grids));
   raise_to_usual(limits);
-  for (const auto& [name, limit] : limits) out.frequencies.push_back(limit);
+  for (const auto& [name, limit] : limits) out.reference.push_back(limit);
   put_in_order(out);
   return out;
 } catch (const std::runtime_error& e) {
-  ReferenceModes none;
+  FrequencyTable none;
+  none.material = material;
+  none.element = element_of(prepared);
   none.failure = e.what();
   return none;
 }
@@ -247,11 +249,7 @@ std::map<std::string, double> lowest_frequencies(const PreparedCase& prepared, c
                                                  const std::string& element, const IsotropicMaterial& material) try {
   const Eigen::VectorXd weights = nodal_volumes(*lattice.mesh);
   const auto modes_of = [&](const IsotropicMaterial& m) -> ModeSet {
-    fem::Request request = fem::request_of(prepared.experiment, m);
-    request.material = m;
-    request.law = "linear";
-    request.loads = supports_of(prepared.experiment);
-    request.modes = modes_for_axes + modes_beside;
+    fem::Request request = mode_request(prepared.experiment, m, modes_for_axes + modes_beside);
     request.points = lattice.mesh->nodes;
     request.grids = {{lattice.cells, element}};
     const fem::Solution solved = solve_each(request).front();
@@ -279,7 +277,7 @@ std::vector<ReferenceRecord> records_of(const FrequencyTable& table) {
 
 std::vector<Load> supports_of(const Experiment& e) {
   std::vector<Load> supports;
-  std::copy_if(e.loads.begin(), e.loads.end(), std::back_inserter(supports), prescribes_displacement);
+  std::ranges::copy_if(e.loads, std::back_inserter(supports), prescribes_displacement);
   return supports;
 }
 
@@ -310,22 +308,15 @@ std::vector<FrequencyTable> natural_frequencies(const PreparedCase& prepared, co
   std::vector<std::string> patches;
   for (const Patch& p : prepared.lattices.front().mesh->patches) patches.push_back(p.name);
   check_patches(prepared.experiment, patches);
-  const ReferenceModes reference = reference_modes(prepared, material, options.modes);
+  const FrequencyTable reference = reference_modes(prepared, material, options.modes);
   const auto go_on = [] {
     if (children_interrupted()) throw std::runtime_error("interrupted");
   };
   std::vector<FrequencyTable> tables;
   for (const Lattice& lattice : prepared.lattices) {
-    FrequencyTable& table = tables.emplace_back();
-    table.material = material;
+    FrequencyTable& table = tables.emplace_back(reference);
     table.lattice = &lattice;
-    table.element = element_of(prepared);
-    table.form = reference.form;
-    table.failure = reference.failure;
-    table.rigid_motions = reference.rigid_motions;
-    table.reference = reference.frequencies;
-    table.shapes.frequencies = reference.finest.frequencies;
-    for (const NodalVectors& u : reference.finest.shapes) table.shapes.shapes.push_back(at_nodes(lattice, u));
+    for (NodalVectors& u : table.shapes.shapes) u = at_nodes(lattice, u);
     const Eigen::VectorXd weights = nodal_volumes(*lattice.mesh);
     for (std::size_t m = 0; m < prepared.models.size(); ++m) {
       const bool cells = prepared.models[m].row.topology == Topology::cells;

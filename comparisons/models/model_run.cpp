@@ -11,15 +11,14 @@
 #include "comparisons/models/external.h"
 #include "comparisons/models/frequencies.h"
 #include "comparisons/models/region_means.h"
+#include "comparisons/prepare/load_resultants.h"
 #include "comparisons/prepare/sampling.h"
-#include "comparisons/prepare/voxel_body.h"
 #include "comparisons/reference/reference_grids.h"
 #include "msm/laws/capabilities.h"
 #include "msm/measure/block_moduli.h"
 #include "msm/measure/statistics.h"
 #include "msm/models.h"
 #include "msm/parameters/calibrate.h"
-#include "problem/case_file/external.h"
 #include "problem/case_file/measures.h"
 #include "problem/system/progress.h"
 #include "problem/system/run_cost.h"
@@ -27,13 +26,9 @@
 namespace springproof {
 namespace {
 
-bool asked(const Experiment& e, const std::string& measure) {
-  return std::find(e.measures.begin(), e.measures.end(), measure) != e.measures.end();
-}
-
 /// Whether the case measures stresses, and this model has them.
 bool recovers_stress(const Experiment& e, const MassSpringModel& model) {
-  return (asked(e, "stress") || asked(e, "stress_error") || asked(e, "stress_peak")) &&
+  return (e.asks_for("stress") || e.asks_for("stress_error") || e.asks_for("stress_peak")) &&
          can(model, Capability::recovered_stress) && e.model_kinematics() == Kinematics::linear;
 }
 
@@ -75,30 +70,16 @@ SolvedModel solve_network(const PreparedCase& prepared, const Lattice& lattice, 
 /// Solves with times that can be compared, and the memory of this run alone.
 SolvedModel solve_and_count(const PreparedCase& prepared, const Lattice& lattice, const ModelParameters& parameters,
                             const IsotropicMaterial& material, bool in_motion) {
-  if (&lattice == &prepared.lattices.front())
-    solve_network(prepared, lattice, parameters, material, in_motion);  // memory retained between runs is not counted
+  const auto solve = [&] { return solve_network(prepared, lattice, parameters, material, in_motion); };
+  if (&lattice == &prepared.lattices.front()) solve();  // memory retained between runs is not counted
   const MemoryGrowth memory;
-  SolvedModel s = solve_network(prepared, lattice, parameters, material, in_motion);
+  SolvedModel s = solve();
   s.state.memory_MiB = memory.most_MiB();
-  if (s.state.ok)
-    s.times =
-        least_times(s.times, [&] { return solve_network(prepared, lattice, parameters, material, in_motion).times; });
+  if (s.state.ok) s.times = least_times(s.times, [&] { return solve().times; });
   return s;
 }
 
-const char* name_of(Loss loss) {
-  switch (loss) {
-    case Loss::none:
-      return "";
-    case Loss::unstable:
-      return "unstable";
-    case Loss::inverted_cell:
-      return "inverted cell";
-    case Loss::no_convergence:
-      return "no convergence";
-  }
-  return "";
-}
+constexpr const char* names_of_losses[] = {"", "unstable", "inverted cell", "no convergence"};  // in the order of Loss
 
 /// Of a lattice whose nodes are the mesh's.  A motion has the wrinkles of its worst frame over the strain of its
 /// largest: what rings when little is strained is no wrinkle.
@@ -108,7 +89,7 @@ Stability stability_of(const Equilibrium& state, const Mesh& mesh, const MotionR
     const Wrinkles frame = wrinkles(mesh, displacement);
     worst = {std::max(worst.alternating, frame.alternating), std::max(worst.strain, frame.strain)};
   }
-  Stability s{state.load_reached, name_of(state.loss), 0, {}, {}, worst.share()};
+  Stability s{state.load_reached, names_of_losses[static_cast<int>(state.loss)], 0, {}, {}, worst.share()};
   s.strain = deformation_size(mesh, state.displacement, kinematics).principal_strain;
   if (!state.softest) return s;
   s.softest = state.softest->stiffness;
@@ -135,7 +116,7 @@ ModelSample run_sample(const PreparedCase& prepared, const Lattice& lattice, std
   const IsotropicMaterial solid = in_motion ? material : prepared.experiment.at_rest(material);
   ModelSample sample =
       measured(prepared, lattice, parameters, solve(prepared, lattice, parameters, solid, in_motion), in_motion);
-  if (asked(prepared.experiment, "frequency") && sample.state.ok && !in_motion)
+  if (prepared.experiment.asks_for("frequency") && sample.state.ok && !in_motion)
     sample.scalars.merge(lowest_frequencies(prepared, lattice, number, material));
   return sample;
 }
@@ -178,24 +159,24 @@ ModelSample measured(const PreparedCase& prepared, const Lattice& lattice, const
       prepared, sample.field,
       cut ? displacement_at(cells_of(lattice, parameters), sample.state.displacement, measured_points(prepared))
           : at_measured_points(prepared, lattice, sample.field.displacement));
-  if (cut && averaged_springs_of(built.model) && asked(e, "promised_error") && !in_motion)
+  if (cut && averaged_springs_of(built.model) && e.asks_for("promised_error") && !in_motion)
     sample.scalars["promised_error"] =
         lattice.falls_short * cell_energies(built.model, sample.state.displacement).estimated_error();
   if (recovers_stress(e, built.model) && !in_motion && (cut || network.cells.corners == mesh->hexahedra))
     sample.stress = recovered_stress(built.model, sample.state.displacement);
   const bool by_material = !network.cells.materials.empty();
-  if (by_material && asked(e, "region"))
+  if (by_material && e.asks_for("region"))
     sample.scalars.merge(region_means(built.model, e.regions, sample.state.displacement, e.model_kinematics()));
-  if (by_material && asked(e, "interface"))
+  if (by_material && e.asks_for("interface"))
     sample.scalars.merge(interface_forces(
         built.model, e.regions, sample.state.displacement,
         weight_of_body(prepared, lattice, built, in_motion ? 0 : sample.state.load_reached), e.model_kinematics()));
-  if (asked(e, "network")) add_network(network, sample.scalars);
-  if (asked(e, "line")) {
+  if (e.asks_for("network")) add_network(network, sample.scalars);
+  if (e.asks_for("line")) {
     sample.line = sample_line(*e.line, *kelvin_of(e), built.model, sample.state.displacement);
     sample.scalars.merge(line_deviations(*sample.line));
   }
-  if (asked(e, "moduli")) add_moduli(prepared, built.model, sample.state.displacement, sample.scalars);
+  if (e.asks_for("moduli")) add_moduli(prepared, built.model, sample.state.displacement, sample.scalars);
   return sample;
 }
 

@@ -1,4 +1,4 @@
-#include "comparisons/models/motion_measured.h"
+#include "comparisons/models/motion_run.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 namespace springproof {
 
 const std::vector<double>* series(const HistoryRecord& h, const std::string& name) {
-  const auto at = std::find(h.names.begin(), h.names.end(), name);
+  const auto at = std::ranges::find(h.names, name);
   return at == h.names.end() ? nullptr : &h.values[at - h.names.begin()];
 }
 
@@ -33,8 +33,7 @@ std::map<std::string, double> measured_in_time(const Experiment& e, const Histor
   const MotionChoice& motion = *e.dynamics;
   const std::vector<double>& u = *series(h, h.probe);
   const double settled = motion.course.settled();
-  const auto first =
-      std::isfinite(settled) ? std::lower_bound(h.time.begin(), h.time.end(), settled) - h.time.begin() : 0;
+  const auto first = std::isfinite(settled) ? std::ranges::lower_bound(h.time, settled) - h.time.begin() : 0;
   std::map<std::string, double> out;
   if (const auto swings = swings_of({h.time.begin() + first, h.time.end()}, {u.begin() + first, u.end()})) {
     out["period"] = swings->period;
@@ -148,8 +147,8 @@ void measure(const MovingNetwork& moving, const BoundaryConditions& last, Histor
   const bool damped = motion.damping > 0;
   if (!damped && motion.viscosity == 0 && !landed(h)) measure_energy(first_settled(motion, h), h);
   const std::vector<double>& kinetic = *series(h, "kinetic_energy");
-  const double scale = std::sqrt(2 * masses.sum() * *std::max_element(kinetic.begin(), kinetic.end()));
-  const bool flies = std::none_of(last.fixed.begin(), last.fixed.end(), [](bool f) { return f; });
+  const double scale = std::sqrt(2 * masses.sum() * *std::ranges::max_element(kinetic));
+  const bool flies = std::ranges::none_of(last.fixed, [](bool f) { return f; });
   if (flies && !moving.network().cells.empty())
     h.measured["inertia_excess"] = inertia_excess(
         moving.network(), moving.material.density * volumes_by_mass(moving.network()), motion.mass_consistency);

@@ -6,12 +6,11 @@
 #include <cmath>
 #include <utility>
 
-#include "comparisons/models/motion_measured.h"
+#include "comparisons/models/motion_run.h"
 #include "comparisons/prepare/sampling.h"
 #include "comparisons/reference/reference_grids.h"
 #include "comparisons/reference/solve_each.h"
 #include "fem_reference/exchange/case_request.h"
-#include "problem/processes/child.h"
 
 namespace springproof {
 namespace {
@@ -79,7 +78,7 @@ fem::Request motion_request(const PreparedCase& prepared, const IsotropicMateria
 
 double at_time(const std::vector<double>& t, const std::vector<double>& u, double time) {
   const auto count = static_cast<long>(t.size()), points = std::min(4L, count);
-  const long after = std::upper_bound(t.begin(), t.end(), time) - t.begin();
+  const long after = std::ranges::upper_bound(t, time) - t.begin();
   const long first = std::clamp(after - points / 2, 0L, count - points);
   double sum = 0;
   for (long i = first; i < first + points; ++i) {
@@ -187,8 +186,6 @@ MotionReference limit_of_motion(const PreparedCase& prepared, std::vector<fem::S
 MotionReference solve_motion(const PreparedCase& prepared, const IsotropicMaterial& material,
                              const RunKeeper& keeper) try {
   return limit_of_motion(prepared, solve_each(motion_request(prepared, material), keeper));
-} catch (const NoRoom&) {  // no fault of the case
-  throw;
 } catch (const InputError&) {
   throw;
 } catch (const std::runtime_error& e) {

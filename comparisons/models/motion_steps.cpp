@@ -1,4 +1,4 @@
-#include "comparisons/models/motion_steps.h"
+#include "comparisons/models/motion_run.h"
 
 #include <fmt/format.h>
 

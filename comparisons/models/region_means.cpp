@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "comparisons/reference/region_measures.h"
+#include "comparisons/reference/reference_grids.h"
 #include "msm/embedding/cut_lattice.h"
 #include "msm/laws/anchors.h"
 #include "msm/laws/filled_volume.h"

@@ -1,4 +1,4 @@
-#include "comparisons/models/scattered.h"
+#include "comparisons/models/external.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -76,7 +76,7 @@ std::vector<int> ScatteredField::near(const Vec3& p, double radius) const {
         return false;
       },
       static_cast<int>(rings) + 1);
-  std::sort(found.begin(), found.end());
+  std::ranges::sort(found);
   return found;
 }
 

@@ -9,11 +9,8 @@
 
 #include "comparisons/judge/judge.h"
 #include "comparisons/judge/measures.h"
-#include "msm/exchange/springs_file.h"
-#include "msm/laws/capabilities.h"
 #include "msm/measure/validity.h"
 #include "msm/topology/cubic_lattice.h"
-#include "problem/case_file/external.h"
 #include "problem/case_file/measures.h"
 #include "problem/system/nearest_name.h"
 
@@ -30,29 +27,10 @@ void check_expectations(const Experiment& experiment) {
   }
 }
 
-/// Names of the models that can.
-static std::vector<std::string> able(Capability what) {
-  std::vector<std::string> names;
-  for (const ModelRow& row : model_table())
-    if (can(row, what)) names.push_back(row.name);
-  return names;
-}
-
-void check_kinematics(const Experiment& e, const std::vector<ModelParameters>& models) {
-  if (e.model_kinematics() == Kinematics::linear) return;
-  for (std::size_t m = 0; m < models.size(); ++m)
-    if (const ModelRow& row = models[m].row; !can(row, Capability::large_displacements))
-      throw InputError(
-          e.models[m].where,
-          fmt::format(
-              "compare.models: {} holds under kinematics = \"linear\" only, and the case has \"{}\" (allowed: {})",
-              row.name, e.kinematics, fmt::join(able(Capability::large_displacements), ", ")));
-}
-
 void check_mean_displacements(const Experiment& e, const std::vector<std::string>& patches) {
   const auto check = [&](const std::string& row, const SourceLocation& where) {
     const std::string patch = patch_of_row(row);
-    if (patch.empty() || std::find(patches.begin(), patches.end(), patch) != patches.end()) return;
+    if (patch.empty() || std::ranges::find(patches, patch) != patches.end()) return;
     throw InputError(where, fmt::format("measure: the body has no patch '{}' (allowed: {}){}", patch,
                                         fmt::join(patches, ", "), did_you_mean(patch, patches)));
   };
@@ -61,36 +39,13 @@ void check_mean_displacements(const Experiment& e, const std::vector<std::string
   for (const MeasuredValue& m : e.measured) check(m.quantity, m.where);
 }
 
-static bool has_stresses(const Experiment& e, const std::string& model, const std::vector<ModelParameters>& models) {
-  const auto at = std::ranges::find(e.models, model, &ModelChoice::label);
-  if (at == e.models.end()) return !(e.body.is_voxels() && model.starts_with("fem_q"));
-  const ModelParameters& p = models[at - e.models.begin()];
-  if (is_external(*at) || at->in_motion || p.coarsened.value_or(false)) return false;
-  if (p.cut.value_or(false)) return true;  // averaged springs, all of them
-  return p.springs ? can(p.springs->model, Capability::recovered_stress) : can(p.row, Capability::recovered_stress);
-}
-
-void check_stresses(const Experiment& e, const std::vector<ModelParameters>& models) {
-  for (const Expectation& x : e.expectations)
-    if (x.measure.starts_with("stress") && !has_stresses(e, x.model, models))
-      throw InputError(
-          x.location,
-          fmt::format("measure: '{}' is not known of '{}' (allowed: of {}, and in cut cells of all lattices, "
-                      "at rest and not coarsened; of elements, but not on the cubes of a body of voxels)",
-                      x.measure, x.model, fmt::join(able(Capability::recovered_stress), ", ")));
-}
-
 namespace {
 
 using FacetKey = std::array<int, 4>;
 
 FacetKey key_of(FacetKey facet) {
-  std::sort(facet.begin(), facet.end());
+  std::ranges::sort(facet);
   return facet;
-}
-
-SourceLocation where(const Experiment& e, std::size_t load) {
-  return load < e.load_locations.size() ? e.load_locations[load] : SourceLocation{e.file.string()};
 }
 
 /// What holds a node or a facet of the surface, along each axis: the number of a load, -1: none.
@@ -140,6 +95,35 @@ constexpr double harmless_strain = 0.01;
 constexpr double in_places = 1.25;  // a body is strained by so much more than on average
 constexpr double near = 1e-9;       // of the body's size: supports that far apart impose no strain
 
+/// Nominal strains along the axes that pairs of moved supports impose, the most negative and the most positive
+/// (msm/measure/validity.h); 0: none.
+struct ImposedStrain {
+  double compression = 0, tension = 0;
+};
+
+ImposedStrain imposed_strain(const PreparedCase& prepared) {
+  struct Support {
+    Vec3 at;
+    const PrescribedDisplacement* moved;
+  };
+  const Mesh& mesh = *prepared.lattices.front().mesh;
+  std::vector<Support> supports;
+  for (const Load& load : prepared.loads)
+    if (const auto* moved = std::get_if<PrescribedDisplacement>(&load))
+      supports.push_back({centroid(mesh, patch(mesh, moved->on)), moved});
+  ImposedStrain imposed;
+  for (const Support& a : supports)
+    for (const Support& b : supports)
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto from = a.moved->displacement[axis], to = b.moved->displacement[axis];
+        const double apart = b.at[axis] - a.at[axis];
+        if (!from || !to || apart < near * prepared.body.size.norm()) continue;
+        imposed.compression = std::min(imposed.compression, (*to - *from) / apart);
+        imposed.tension = std::max(imposed.tension, (*to - *from) / apart);
+      }
+  return imposed;
+}
+
 /// Whether strain_limit() knows the model.
 bool is_of_cells(const ModelParameters& p) {
   return p.row.topology == Topology::cells && !p.has(Extension::momentum_dispersion) && !p.cut.value_or(false);
@@ -174,12 +158,12 @@ void check_supports(const Experiment& e, const Mesh& surface) {
         const auto [load, u] = moved.try_emplace(3 * node + d, static_cast<int>(i), *value[d]).first->second;
         if (std::abs(u - *value[d]) <= 1e-9 * size) continue;
         throw InputError(
-            where(e, i),
+            e.load_locations[i],
             fmt::format(
                 "load: '{}' has the displacement {} = {} at {}, where '{}' of the load in line {} has {} (allowed: one "
                 "displacement at each place of the surface)",
                 name, "xyz"[d], text(*value[d], e.units), text(X, e.units), *patch_of(e.loads[load]),
-                where(e, load).line, text(u, e.units)));
+                e.load_locations[load].line, text(u, e.units)));
       }
     }
   }
@@ -187,33 +171,10 @@ void check_supports(const Experiment& e, const Mesh& surface) {
   for (std::size_t i = 0; i < e.loads.size(); ++i)
     if (const int holder = patch_of(e.loads[i]) ? holder_of_all(e, i, surface, held) : -1; holder >= 0)
       throw InputError(
-          where(e, i),
+          e.load_locations[i],
           fmt::format("load: the force on '{}' acts where the load in line {} holds '{}': it would only add "
                       "to the reaction there (allowed: a force on a part of the surface that is free)",
-                      *patch_of(e.loads[i]), where(e, holder).line, *patch_of(e.loads[holder])));
-}
-
-ImposedStrain imposed_strain(const PreparedCase& prepared) {
-  struct Support {
-    Vec3 at;
-    const PrescribedDisplacement* moved;
-  };
-  const Mesh& mesh = *prepared.lattices.front().mesh;
-  std::vector<Support> supports;
-  for (const Load& load : prepared.loads)
-    if (const auto* moved = std::get_if<PrescribedDisplacement>(&load))
-      supports.push_back({centroid(mesh, patch(mesh, moved->on)), moved});
-  ImposedStrain imposed;
-  for (const Support& a : supports)
-    for (const Support& b : supports)
-      for (int axis = 0; axis < 3; ++axis) {
-        const auto from = a.moved->displacement[axis], to = b.moved->displacement[axis];
-        const double apart = b.at[axis] - a.at[axis];
-        if (!from || !to || apart < near * prepared.body.size.norm()) continue;
-        imposed.compression = std::min(imposed.compression, (*to - *from) / apart);
-        imposed.tension = std::max(imposed.tension, (*to - *from) / apart);
-      }
-  return imposed;
+                      *patch_of(e.loads[i]), e.load_locations[holder].line, *patch_of(e.loads[holder])));
 }
 
 std::vector<LatticeLimit> lattice_limits(const PreparedCase& prepared) {
@@ -221,7 +182,7 @@ std::vector<LatticeLimit> lattice_limits(const PreparedCase& prepared) {
   std::vector<LatticeLimit> limits;
   if (e.model_kinematics() == Kinematics::linear || prepared.lattices.empty()) return limits;
   const auto of_boxes = [](const Lattice& l) { return l.mesh->grid && !has_cubes(*l.mesh->grid); };
-  if (std::any_of(prepared.lattices.begin(), prepared.lattices.end(), of_boxes)) return limits;  // known of cubes
+  if (std::ranges::any_of(prepared.lattices, of_boxes)) return limits;  // known of cubes
   const ImposedStrain imposed = imposed_strain(prepared);
   const ModelParameters recommended = resolve({"hybmss_avg", {}, "hybmss_avg", {}});
   for (std::size_t m = 0; m < prepared.models.size(); ++m) {

@@ -15,25 +15,12 @@ namespace springproof {
 /// @throws InputError at an expectation that has nothing to be compared with.
 void check_expectations(const Experiment& experiment);
 
-/// @throws InputError at a model that does not hold under the case's kinematics; `models` in the order of the case.
-void check_kinematics(const Experiment& experiment, const std::vector<ModelParameters>& models);
-
 /// @throws InputError at an expectation or a published value of the mean displacement of a patch that the body lacks.
 void check_mean_displacements(const Experiment& experiment, const std::vector<std::string>& patches);
 
 /// @throws InputError naming both loads if two of them move one place of the surface differently, or if a force acts
 ///   only where others hold the body; `surface`: mesh of the body with its patches.
 void check_supports(const Experiment& experiment, const Mesh& surface);
-
-/// @throws InputError for an [[expect]] of stresses that are not recovered of its model.
-void check_stresses(const Experiment& experiment, const std::vector<ModelParameters>& models);
-
-/// Nominal strains along the axes that pairs of moved supports impose, the most negative and the most positive
-/// (msm/measure/validity.h); 0: none.
-struct ImposedStrain {
-  double compression = 0, tension = 0;
-};
-ImposedStrain imposed_strain(const PreparedCase& prepared);
 
 /// Of large displacements: every model of whole cells and every Poisson's ratio at which the lattice is not stable up
 /// to 1.25 times the imposed strain, with free or with held sides.  Forces impose no strain that is known before.

@@ -19,7 +19,7 @@ constexpr double least_spread = 1e-6;  // of an area or a volume between the mes
 /// The rule of this name; none: the patch is named in the file.
 const PatchRule* rule_of(const PreparedCase& prepared, const std::string& name) {
   const std::vector<PatchRule>& rules = prepared.experiment.patches;
-  const auto rule = std::find_if(rules.begin(), rules.end(), [&](const PatchRule& r) { return r.name == name; });
+  const auto rule = std::ranges::find_if(rules, [&](const PatchRule& r) { return r.name == name; });
   return rule == rules.end() ? nullptr : &*rule;
 }
 
@@ -148,8 +148,18 @@ void set_load_spread(PreparedCase& prepared) {
 
 }  // namespace
 
-bool flies(const Experiment& e) {
-  return e.dynamics && std::none_of(e.loads.begin(), e.loads.end(), prescribes_displacement);
+bool flies(const Experiment& e) { return e.dynamics && std::ranges::none_of(e.loads, prescribes_displacement); }
+
+std::vector<PatchReaction> about_true_patches(const PreparedCase& prepared, const Mesh& own,
+                                              std::vector<PatchReaction> reactions) {
+  const Mesh& body = *prepared.body.tetrahedra.back();
+  for (PatchReaction& r : reactions) {
+    const auto of_file = prepared.body.centroids.find(r.patch);
+    const Vec3 about =
+        of_file != prepared.body.centroids.end() ? of_file->second : centroid(body, patch(body, r.patch));
+    r.torque += (centroid(own, patch(own, r.patch)) - about).cross(r.force);
+  }
+  return reactions;
 }
 
 void set_resultants(PreparedCase& prepared) {

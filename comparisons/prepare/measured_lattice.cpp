@@ -12,7 +12,7 @@
 #include "msm/coarsening/states.h"
 #include "msm/embedding/cut_lattice.h"
 #include "msm/periodic/laws_of_model.h"
-#include "problem/files/checksum.h"
+#include "problem/files/files.h"
 #include "problem/files/kept_file.h"
 #include "problem/processes/child.h"
 #include "problem/system/progress.h"
@@ -58,7 +58,7 @@ std::string line_of(const CutBody& coarse, const Mesh& body, const std::vector<s
                      g.origin[0], g.origin[1], g.origin[2], g.edge, measuring_ratio, coarse.cells.size());
 }
 
-// File format: the heading (problem/files/checked_file.h), the key, and these numbers in the machine's bytes.
+// File format: the heading (problem/files/new_file.h), the key, and these numbers in the machine's bytes.
 const KeptKind kept_cells = {"cells", ".bin", "springproof measured cells 3 "};
 
 std::string content_of(const MeasuredBody& measured) {

@@ -6,10 +6,13 @@
 #include <cmath>
 #include <iterator>
 
+#include "meshes/mesher/mesher.h"
+#include "meshes/mesher/script_files.h"
 #include "msm/dynamics/time_step.h"
 #include "msm/embedding/boundary.h"
 #include "msm/exchange/anchored_springs.h"
 #include "msm/vertex_models.h"
+#include "problem/files/files.h"
 
 namespace springproof {
 
@@ -89,6 +92,20 @@ bool takes_explicit_steps(const std::optional<MotionChoice>& motion) {
 
 }  // namespace
 
+std::string input_checksum(const Experiment& e) {
+  std::string all = checksum(e.text);
+  const auto add = [&](const std::filesystem::path& file) {
+    all += file.filename().string() + checksum(text_of_file(file));
+  };
+  for (const auto& file : files_behind(find_geo(e.body, e.file))) add(file);
+  for (const MaterialRegion& region : e.regions)
+    if (const auto* in = std::get_if<EnclosedPlace>(&region.place)) add(in->file);
+  for (const std::filesystem::path& history : e.histories) add(history);
+  for (const ModelChoice& model : e.models)
+    if (!model.file.empty()) add(model.file);
+  return checksum(all);
+}
+
 const Network& FittedNetworks::of(const ModelParameters& parameters, const Mesh& tetrahedra) {
   const std::scoped_lock lock(one_at_a_time_);
   const double key = parameters.random.springs_per_node;
@@ -151,14 +168,14 @@ std::size_t finest_lattice(const PreparedCase& prepared) {
   const auto finer = [](const Lattice& a, const Lattice& b) {
     return a.mesh->hexahedra.size() < b.mesh->hexahedra.size();
   };
-  return static_cast<std::size_t>(std::max_element(all.begin(), all.end(), finer) - all.begin());
+  return static_cast<std::size_t>(std::ranges::max_element(all, finer) - all.begin());
 }
 
 std::vector<std::string> elements_of(const Experiment& e, char shape) {
   std::vector<std::string> elements;
   if (!e.models.empty())
-    std::copy_if(e.elements.begin(), e.elements.end(), std::back_inserter(elements),
-                 [&](const std::string& name) { return name[0] == shape; });
+    std::ranges::copy_if(e.elements, std::back_inserter(elements),
+                         [&](const std::string& name) { return name[0] == shape; });
   return elements;
 }
 

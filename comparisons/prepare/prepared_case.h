@@ -21,6 +21,10 @@
 
 namespace springproof {
 
+/// Checksum of what a case is computed from: the files of its body and the springs files of its models.
+/// @throws InputError if there is no such body.
+std::string input_checksum(const Experiment& experiment);
+
 /// Networks on the vertices of one mesh whose springs pass the patch test: each is fitted once, for all materials.
 class FittedNetworks {
  public:
@@ -67,6 +71,8 @@ struct BodyOfCase {
   double chords = 0;       ///< by what share facets may change displacements where the body is smooth; 0: it is not
   double load_spread = 0;  ///< relative difference of loads by area or volume between the meshes
   std::vector<std::string> notes;  ///< what was repaired or left out of the body
+
+  void note(const std::vector<std::string>& more) { notes.insert(notes.end(), more.begin(), more.end()); }
 };
 
 /// How the displacement at a lattice node of a body of voxels follows from the finite elements' at Samples::points:

@@ -17,8 +17,8 @@ constexpr double untold = 4;  // what an estimate is taken to fall short by as l
 
 /// The energies of the lattice in each material of the case.
 std::vector<CellEnergies> energies_of(const PreparedCase& prepared, const CutBody& cut, const Mesh& body) {
-  const auto parameters = std::find_if(prepared.models.begin(), prepared.models.end(),
-                                       [](const ModelParameters& p) { return p.cut.value_or(false); });
+  const auto parameters =
+      std::ranges::find_if(prepared.models, [](const ModelParameters& p) { return p.cut.value_or(false); });
   std::set<std::string> held;
   for (const Load& load : prepared.loads)
     if (prescribes_displacement(load)) held.insert(*patch_of(load));

@@ -40,7 +40,7 @@ std::map<std::array<int, 3>, std::array<int, 2>> facets_of(const Mesh& body) {
       std::array<int, 3> facet{};
       for (int i = 0, n = 0; i < 4; ++i)
         if (i != without) facet[n++] = body.tetrahedra[c][i];
-      std::sort(facet.begin(), facet.end());
+      std::ranges::sort(facet);
       const auto [at, first] = facets.emplace(facet, std::array{static_cast<int>(c), -1});
       if (!first) at->second[1] = static_cast<int>(c);
     }

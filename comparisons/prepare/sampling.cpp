@@ -16,10 +16,7 @@ NodalVectors probe_points(const Experiment& e) {
 
 NodalVectors measured_points(const PreparedCase& prepared) {
   NodalVectors points = probe_points(prepared.experiment);
-  for (const PatchSamples& p : prepared.samples.of_patches) {
-    points.conservativeResize(points.rows() + p.points.rows(), 3);
-    points.bottomRows(p.points.rows()) = p.points;
-  }
+  for (const PatchSamples& p : prepared.samples.of_patches) points = stacked(points, p.points);
   return points;
 }
 
@@ -38,17 +35,6 @@ NodalVectors stacked(const NodalVectors& a, const NodalVectors& b) {
 
 NodalVectors at_nodes(const Lattice& lattice, const NodalVectors& samples) {
   return samples.middleRows(lattice.first_node, lattice.mesh->nodes.rows());
-}
-
-NodalVectors at_measured(const PreparedCase& prepared, const NodalVectors& samples) {
-  return samples.bottomRows(samples.rows() - prepared.nodes());
-}
-
-NodalVectors known_at(const PreparedCase& prepared, const Lattice& lattice, const NodalVectors& at_nodes,
-                      const NodalVectors& at_measured) {
-  NodalVectors of_lattices = NodalVectors::Zero(prepared.nodes(), 3);
-  of_lattices.middleRows(lattice.first_node, at_nodes.rows()) = at_nodes;
-  return stacked(of_lattices, at_measured);
 }
 
 NodalVectors at_lattice_nodes(const PreparedCase& prepared, const NodalVectors& u) {

@@ -20,13 +20,6 @@ NodalVectors stacked(const NodalVectors& a, const NodalVectors& b);
 /// The part of Solution::displacement that belongs to the nodes of one lattice.
 NodalVectors at_nodes(const Lattice& lattice, const NodalVectors& samples);
 
-/// The part of it that belongs to the measured points.
-NodalVectors at_measured(const PreparedCase& prepared, const NodalVectors& samples);
-
-/// A Solution::displacement that is known at one lattice and at the measured points, and 0 elsewhere.
-NodalVectors known_at(const PreparedCase& prepared, const Lattice& lattice, const NodalVectors& at_nodes,
-                      const NodalVectors& at_measured);
-
 /// Displacement at the nodes of every lattice, one after the other, from that at Samples::points.
 NodalVectors at_lattice_nodes(const PreparedCase& prepared, const NodalVectors& at_points);
 

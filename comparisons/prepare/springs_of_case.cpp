@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "comparisons/prepare/input_checksum.h"
 #include "msm/embedding/boundary.h"
 #include "msm/embedding/supports.h"
 #include "msm/measure/moduli.h"

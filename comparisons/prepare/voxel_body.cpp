@@ -107,7 +107,7 @@ void mesh_the_body(MeshRequest request, PreparedCase& prepared, std::string& hin
   if (!alone) request.coarser = {reference_ratios.begin(), reference_ratios.end()};
   MeshedBody body = alone ? mesh_to_cut(request) : mesh_body(request);
   prepared.body.notes = {size_note(body.mesh, prepared.experiment.units)};
-  prepared.body.notes.insert(prepared.body.notes.end(), body.notes.begin(), body.notes.end());
+  prepared.body.note(body.notes);
   hint = scale_hint(body.mesh, e.body);
   if (!hint.empty()) prepared.body.notes.push_back(hint);
   prepared.body.chords = chords(body);
@@ -120,7 +120,7 @@ void mesh_the_body(MeshRequest request, PreparedCase& prepared, std::string& hin
     std::vector<std::string> notes = mark_regions(e.regions, coarser, mesh);
     for (std::string& note : select_patches(e.patches, mesh, coarser)) notes.push_back(std::move(note));
     for (std::string& note : refine_rims(prepared, prepared.body.uncut[m], mesh)) notes.push_back(std::move(note));
-    if (m + 1 == body.coarser.size()) prepared.body.notes.insert(prepared.body.notes.end(), notes.begin(), notes.end());
+    if (m + 1 == body.coarser.size()) prepared.body.note(notes);
     prepared.body.tetrahedra.push_back(std::make_shared<Mesh>(std::move(mesh)));
   }
   if (!e.regions.empty()) prepared.body.of_regions = prepared.body.tetrahedra.back();
@@ -147,8 +147,7 @@ void check_counts(const std::vector<double>& edges, double volume) {
 
 /// Whether some model takes whole cubes.
 bool takes_whole_cubes(const PreparedCase& prepared) {
-  return std::any_of(prepared.models.begin(), prepared.models.end(),
-                     [](const auto& p) { return !p.cut.value_or(false); });
+  return std::ranges::any_of(prepared.models, [](const auto& p) { return !p.cut.value_or(false); });
 }
 
 /// @throws std::invalid_argument if the cubes fill more than twice or less than half of the body's volume.
@@ -165,7 +164,7 @@ void compare_volumes(double cubes, double edge, double body, std::vector<std::st
 void mesh_like_lattices(MeshRequest request, PreparedCase& prepared) {
   const Experiment& e = prepared.experiment;
   const auto on_vertices = [](const ModelParameters& p) { return passes_patch_test(p.row); };
-  if (elements_of(e, 'p').empty() && std::none_of(prepared.models.begin(), prepared.models.end(), on_vertices)) return;
+  if (elements_of(e, 'p').empty() && std::ranges::none_of(prepared.models, on_vertices)) return;
   for (Lattice& lattice : prepared.lattices) {
     request.edge = lattice.voxel_edge;
     Mesh mesh = mesh_body(request).mesh;
@@ -231,7 +230,7 @@ void cut_lattices(PreparedCase& prepared) {
   check_counts(edges, region->volume);
   const auto add_cubes = [&](const VoxelGrid& grid) {
     Voxels voxels = voxelise(grid, true_body);
-    for (const std::string& note : voxels.notes) prepared.body.notes.push_back(note);
+    prepared.body.note(voxels.notes);
     const auto cubes = static_cast<double>(voxels.mesh.hexahedra.size());
     if (takes_whole_cubes(prepared)) compare_volumes(cubes, grid.edge, region->volume, prepared.body.notes);
     add_lattice({grid.cells, std::make_shared<Mesh>(std::move(voxels.mesh)), grid.edge, region}, prepared);
@@ -245,9 +244,8 @@ void cut_lattices(PreparedCase& prepared) {
     const VoxelGrid cubes = voxel_grid(true_body, std::cbrt(region->volume / cells));  // for results, and whole cubes
     if (!lattices.empty() && lattices.back().cells == cubes.cells) lattices.pop_back();
     add_cubes(cubes);
-    prepared.body.notes.push_back(refinement_note(refined, accuracy));
-    prepared.body.notes.push_back(cut_cells_note(prepared, refined.cut));
-    prepared.body.notes.insert(prepared.body.notes.end(), refined.cut.notes.begin(), refined.cut.notes.end());
+    prepared.body.note({refinement_note(refined, accuracy), cut_cells_note(prepared, refined.cut)});
+    prepared.body.note(refined.cut.notes);
     lattices.back().estimated = refined.estimated;
     lattices.back().falls_short = refined.falls_short;
     lattices.back().cut = std::make_shared<CutBody>(std::move(refined.cut));
@@ -258,17 +256,15 @@ void cut_lattices(PreparedCase& prepared) {
     progress::detail(fmt::format("voxels of {:.4g} m", edge));
     add_cubes(grid);
     const auto is_cut = [](const ModelParameters& p) { return p.cut.value_or(false); };
-    if (std::none_of(prepared.models.begin(), prepared.models.end(), is_cut)) continue;
+    if (std::ranges::none_of(prepared.models, is_cut)) continue;
     CutBody cut = cut_with_regions(prepared.experiment, grid, true_body);
     prepared.body.notes.push_back(cut_cells_note(prepared, cut));
     if (!prepared.experiment.regions.empty() && edge == edges.back())
-      for (std::string& note : region_notes(prepared.experiment.regions, true_body, edge))
-        prepared.body.notes.push_back(std::move(note));
-    prepared.body.notes.insert(prepared.body.notes.end(), cut.notes.begin(), cut.notes.end());
+      prepared.body.note(region_notes(prepared.experiment.regions, true_body, edge));
+    prepared.body.note(cut.notes);
     prepared.lattices.back().cut = std::make_shared<CutBody>(std::move(cut));
     const auto is_measured = [](const ModelParameters& p) { return p.coarsened.value_or(false); };
-    if (std::any_of(prepared.models.begin(), prepared.models.end(), is_measured))
-      measure_lattice(prepared, prepared.lattices.back());
+    if (std::ranges::any_of(prepared.models, is_measured)) measure_lattice(prepared, prepared.lattices.back());
   }
 }
 
@@ -330,7 +326,7 @@ void check_probes(PreparedCase& prepared) {
   const std::vector<OuterFacet> facets = outer_facets(body);
   const FacetTree tree(body, facets);
   const auto finer = [](const Lattice& a, const Lattice& b) { return a.voxel_edge < b.voxel_edge; };
-  const double slack = std::min_element(prepared.lattices.begin(), prepared.lattices.end(), finer)->voxel_edge / 2;
+  const double slack = std::ranges::min_element(prepared.lattices, finer)->voxel_edge / 2;
   for (const Probe& p : prepared.experiment.probes) {
     if (prepared.lattices.front().region->inside(p.at)) continue;
     const auto [facet, point, distance] = tree.nearest(p.at);
@@ -391,18 +387,6 @@ void prepare_voxel_body(PreparedCase& prepared) {
   } catch (const std::invalid_argument& e) {
     throw InputError(prepared.experiment.body.where, with_hint(e));
   }
-}
-
-std::vector<PatchReaction> about_true_patches(const PreparedCase& prepared, const Mesh& own,
-                                              std::vector<PatchReaction> reactions) {
-  const Mesh& body = *prepared.body.tetrahedra.back();
-  for (PatchReaction& r : reactions) {
-    const auto of_file = prepared.body.centroids.find(r.patch);
-    const Vec3 about =
-        of_file != prepared.body.centroids.end() ? of_file->second : centroid(body, patch(body, r.patch));
-    r.torque += (centroid(own, patch(own, r.patch)) - about).cross(r.force);
-  }
-  return reactions;
 }
 
 }  // namespace springproof

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "comparisons/prepare/prepared_case.h"
-#include "meshes/field.h"
 
 namespace springproof {
 
@@ -17,9 +16,5 @@ inline constexpr std::size_t most_measured_cells = 10000;
 /// The cut cells of a lattice, to be measured in finer ones and on what the case's supports hold along all axes.
 /// @throws std::invalid_argument if they are too many.
 std::shared_ptr<MeasuredLattice> to_be_measured(const PreparedCase& prepared, const Lattice& lattice);
-
-/// Reactions with torques about the rest centroids of the true body's patches instead of those of `own`.
-std::vector<PatchReaction> about_true_patches(const PreparedCase& prepared, const Mesh& own,
-                                              std::vector<PatchReaction> reactions);
 
 }  // namespace springproof

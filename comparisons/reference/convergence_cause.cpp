@@ -1,4 +1,4 @@
-#include "comparisons/reference/convergence_cause.h"
+#include "comparisons/reference/reference_grids.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -100,8 +100,7 @@ Clause thin_parts(const Question& q) {
 
 Clause coarse_across(const Question& q) {
   const Cells& cells = q.grids.grids.back().grid.cells;
-  if (q.voxels() || std::none_of(cells.begin(), cells.end(), [](int n) { return n > 1 && n < two_on_the_coarsest; }))
-    return {};
+  if (q.voxels() || std::ranges::none_of(cells, [](int n) { return n > 1 && n < two_on_the_coarsest; })) return {};
   return fmt::format("the coarsest grid has one cell across: {}", finer_cells(cells));
 }
 

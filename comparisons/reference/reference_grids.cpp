@@ -10,9 +10,6 @@
 #include "comparisons/judge/judge.h"
 #include "comparisons/judge/measures.h"
 #include "comparisons/prepare/rims.h"
-#include "comparisons/reference/convergence_cause.h"
-#include "comparisons/reference/grid_cost.h"
-#include "comparisons/reference/region_measures.h"
 #include "comparisons/reference/solve_each.h"
 #include "fem_reference/exchange/case_request.h"
 #include "msm/embedding/boundary.h"
@@ -35,7 +32,7 @@ void fall_back(const PreparedCase& prepared, fem::Request request, const VtuOutp
                std::vector<ElementGrids>& elements) {
   if (prepared.experiment.reference.grading == 1) return;
   for (ElementGrids& e : elements) {
-    const auto failed = std::find_if(e.grids.begin(), e.grids.end(), [](const fem::Solution& s) { return !s.ok; });
+    const auto failed = std::ranges::find_if(e.grids, [](const fem::Solution& s) { return !s.ok; });
     if (failed == e.grids.end()) continue;
     const std::string why = fmt::format("the graded grid of {} cells has no result ({})",
                                         cells_text(failed->grid.cells, " x "), failed->message);
@@ -112,7 +109,9 @@ double scale_of(const std::string& measure, const std::map<std::string, double>&
 
 std::vector<ReferenceRecord> exact_records(const PreparedCase& prepared, double nu, const ElementGrids& e) {
   const Lattice& lattice = prepared.lattices.front();
-  const NodalVectors truth = exact_at_nodes(prepared);
+  NodalVectors truth = lattice.mesh->nodes;
+  for (Eigen::Index n = 0; n < truth.rows(); ++n)
+    truth.row(n) = exact_displacement(prepared.experiment.exact, Vec3(truth.row(n).transpose())).transpose();
   const Eigen::VectorXd weights = nodal_volumes(*lattice.mesh);
   std::vector<double> errors;
   for (const fem::Solution& s : e.grids)
@@ -162,8 +161,7 @@ int fewest_across(const Experiment& e) {
   const auto has_pressures = [](const IsotropicMaterial& m) { return m.poisson_ratio > pressures_above; };
   std::vector<IsotropicMaterial> regions = materials_of(e.regions);
   regions.insert(regions.end(), e.listed.materials.begin(), e.listed.materials.end());
-  const bool any = std::any_of(e.materials.begin(), e.materials.end(), has_pressures) ||
-                   std::any_of(regions.begin(), regions.end(), has_pressures);
+  const bool any = std::ranges::any_of(e.materials, has_pressures) || std::ranges::any_of(regions, has_pressures);
   return any ? two_on_the_coarsest : two_on_the_coarsest / 2;
 }
 
@@ -185,7 +183,7 @@ std::map<std::string, double> field_measures(const PreparedCase& prepared, const
 }
 
 bool complete(const ElementGrids& e) {
-  return e.grids.size() == 3 && std::all_of(e.grids.begin(), e.grids.end(), [](const auto& s) { return s.ok; });
+  return e.grids.size() == 3 && std::ranges::all_of(e.grids, [](const auto& s) { return s.ok; });
 }
 
 std::string with_note(const ElementGrids& e, const std::string& note) {
@@ -237,8 +235,8 @@ Field sampled_field(const Lattice& lattice, const fem::Solution& s) {
 
 std::map<std::string, double> measures_of(const PreparedCase& prepared, const fem::Solution& s) {
   const std::vector<Probe>& probes = prepared.experiment.probes;
-  auto values =
-      field_measures(prepared, sampled_field(prepared.lattices.front(), s), at_measured(prepared, s.displacement));
+  auto values = field_measures(prepared, sampled_field(prepared.lattices.front(), s),
+                               s.displacement.bottomRows(s.displacement.rows() - prepared.nodes()));
   if (const Eigen::Index measured = stress_probes(prepared); measured > 0 && s.stress.rows() >= measured)
     values.merge(stress_measures(probes, s.stress.topRows(measured)));
   values.merge(region_measures(prepared.experiment.regions, s.regions));
@@ -260,14 +258,6 @@ std::optional<ReactionDifference> reaction_error(const PreparedCase& prepared,
 }
 
 Vec3 sum_of_loads(const PreparedCase& prepared) { return nodal_loads(prepared).colwise().sum().transpose(); }
-
-NodalVectors exact_at_nodes(const PreparedCase& prepared) {
-  if (prepared.experiment.exact.empty()) return NodalVectors(0, 3);
-  NodalVectors u = prepared.lattices.front().mesh->nodes;
-  for (Eigen::Index n = 0; n < u.rows(); ++n)
-    u.row(n) = exact_displacement(prepared.experiment.exact, Vec3(u.row(n).transpose())).transpose();
-  return u;
-}
 
 std::vector<std::string> comparable_moved_patches(const PreparedCase& prepared) {
   std::vector<std::string> patches = moved_patches(prepared.experiment);

@@ -38,6 +38,13 @@ struct ReferenceGrids {
   std::string failure;                              ///< why there is no result
 };
 
+/// The reference at the nodes of one lattice.
+struct Reference {
+  ReferenceField field;
+  std::map<std::string, ReferenceValue> scalars;  ///< the same for every lattice
+  DisplacementScale scale;                        ///< what errors of the displacement are relative to
+};
+
 /// Called with the displacement at the nodes of all lattices on the coarsest grid, before the others are solved.
 using CoarsestField = std::function<void(const NodalVectors& displacement)>;
 
@@ -85,9 +92,6 @@ std::optional<ReactionDifference> reaction_error(const PreparedCase& prepared,
 /// Sum of the loads [N], body forces of exact fields left out.
 Vec3 sum_of_loads(const PreparedCase& prepared);
 
-/// The exact field of the case at the nodes of its first lattice; empty if there is none.
-NodalVectors exact_at_nodes(const PreparedCase& prepared);
-
 /// What errors are relative to where this is the true displacement at the nodes of a lattice.
 DisplacementScale scale_of_errors(const PreparedCase& prepared, const Lattice& lattice, const NodalVectors& truth);
 
@@ -107,5 +111,19 @@ std::vector<ReferenceRecord> records_of(const PreparedCase& prepared, const Isot
 
 /// The records of a case without models as rows of results.csv, one per grid, beside the values expected.
 std::vector<Row> rows_of(const PreparedCase& prepared, const std::vector<ReferenceRecord>& records);
+
+/// region.<region>.<quantity>, of the means over each region, of finite elements or springs; an energy of NaN is none.
+std::map<std::string, double> region_measures(const std::vector<MaterialRegion>& regions,
+                                              const std::vector<fem::RegionMeans>& means);
+
+/// interface.<region>.<other>.force of all that meet, of finite elements or springs.
+std::map<std::string, double> interface_measures(const std::vector<MaterialRegion>& regions,
+                                                 const std::vector<fem::InterfaceForce>& interfaces);
+
+/// The likeliest cause that three grids do not converge in a measure, with a remedy, as a clause for the record's note:
+/// meshes of one fineness, an element that locks, a probe at the rim of a patch, a surface or a rim that differs from
+/// mesh to mesh, a grid too coarse across the body, or else the rims of supports, where stresses are singular.
+std::string cause_and_remedy(const PreparedCase& prepared, const IsotropicMaterial& material, const ElementGrids& grids,
+                             const std::string& measure);
 
 }  // namespace springproof

@@ -1,4 +1,4 @@
-#include "comparisons/reference/region_measures.h"
+#include "comparisons/reference/reference_grids.h"
 
 #include <cmath>
 

@@ -1,9 +1,8 @@
 #include "comparisons/reference/run_keeper.h"
 
-#include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "problem/files/checked_file.h"
+#include "problem/files/new_file.h"
 #include "problem/processes/child.h"
 #include "problem/system/json.h"
 #include "problem/system/streams.h"
@@ -13,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// File format: this heading (problem/files/checked_file.h), then the stamp and the run.
+// File format: this heading (problem/files/new_file.h), then the stamp and the run.
 constexpr std::string_view run_heading = "springproof run 2 ", run_ending = ".run";
 
 /// Of a program that was killed while it wrote, too.
@@ -27,15 +26,15 @@ bool is_ours(const std::string& name) {
 RunKeeper::RunKeeper(fs::path folder, std::string stamp, Listener listener, Sayer sayer)
     : folder_(std::move(folder)), stamp_(std::move(stamp)), listener_(std::move(listener)), sayer_(std::move(sayer)) {}
 
-std::unique_ptr<nlohmann::json> RunKeeper::find(const std::string& name) const try {
+std::optional<nlohmann::json> RunKeeper::find(const std::string& name) const try {
   const fs::path file = folder_ / (name + std::string(run_ending));
-  if (!keeps() || !fs::exists(file)) return nullptr;
+  if (!keeps() || !fs::exists(file)) return {};
   nlohmann::json document = nlohmann::json::from_cbor(read_checked(file, run_heading));
-  if (document.at("stamp") != stamp_) return nullptr;
-  return std::make_unique<nlohmann::json>(std::move(document.at("run")));
+  if (document.at("stamp") != stamp_) return {};
+  return std::optional(std::move(document.at("run")));
 } catch (const DamagedFile& e) {
   to_stderr("note: {}; this run is made anew\n", e.what());
-  return nullptr;
+  return {};
 }
 
 /// A run that an interrupt has ended early is none.

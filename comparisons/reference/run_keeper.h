@@ -5,8 +5,7 @@
 #include <chrono>
 #include <filesystem>
 #include <functional>
-#include <memory>
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <string>
@@ -55,18 +54,17 @@ class RunKeeper {
 
   bool keeps() const { return !folder_.empty(); }
 
-  /// What was kept under this name, read; else what `make` returns, which is kept as `write` gives it.
-  template <class Make, class Write, class Read>
-  auto run(const std::string& name, const RunCost& expected, const Make& make, const Write& write,
-           const Read& read) const {
-    if (const std::unique_ptr<nlohmann::json> kept = find(name)) {
+  /// What was kept under this name; else what `make` returns, which is kept as JSON.
+  template <class Make>
+  auto run(const std::string& name, const RunCost& expected, const Make& make) const {
+    if (const std::optional<nlohmann::json> kept = find(name)) {
       tell(name, expected, {});
-      return read(*kept);
+      return kept->get<decltype(make())>();
     }
     const auto start = std::chrono::steady_clock::now();
     auto result = make();
     tell(name, expected, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-    if (keeps()) keep(name, write(result));
+    if (keeps()) keep(name, result);
     return result;
   }
 
@@ -81,7 +79,7 @@ class RunKeeper {
   void forget() const;
 
  private:
-  std::unique_ptr<nlohmann::json> find(const std::string& name) const;
+  std::optional<nlohmann::json> find(const std::string& name) const;
   void tell(const std::string& name, const RunCost& expected, std::optional<double> took) const;
 
   std::filesystem::path folder_;

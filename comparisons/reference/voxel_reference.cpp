@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "comparisons/judge/measures.h"
-#include "comparisons/prepare/voxel_body.h"
-#include "comparisons/reference/grid_cost.h"
+#include "comparisons/prepare/load_resultants.h"
 #include "comparisons/reference/solve_each.h"
 #include "fem_reference/exchange/case_request.h"
 
@@ -77,8 +77,9 @@ std::vector<fem::Solution> solve_cubes(const PreparedCase& prepared, const Latti
   for (fem::Solution& s : solutions) {
     if (!s.ok) continue;
     s.reactions = about_true_patches(prepared, *mesh, s.reactions);
-    const NodalVectors measured = at_measured_points(prepared, lattice, s.displacement);
-    s.displacement = known_at(prepared, lattice, s.displacement, measured);
+    NodalVectors of_lattices = NodalVectors::Zero(prepared.nodes(), 3);  // known at this one and at the measured points
+    of_lattices.middleRows(lattice.first_node, mesh->nodes.rows()) = s.displacement;
+    s.displacement = stacked(of_lattices, at_measured_points(prepared, lattice, s.displacement));
   }
   return solutions;
 }
@@ -91,9 +92,22 @@ void add_facets(const PreparedCase& prepared, double size, ErrorSplit& split) {
   split.uncertainty += most;
 }
 
+/// The total, in the mean over samples, and the parts that it is made of.
+/// @param peer of eight-node elements on the same voxels, whose refinement has the limit; truth: the body-fitted limit
+template <class Value, class Difference>
+void set_parts(const std::vector<Value>& samples, const Value& peer, const Value& limit, const Value& truth,
+               const Difference& difference, ErrorSplit& split) {
+  for (const Value& sample : samples) {
+    split.total += difference(sample, truth) / static_cast<double>(samples.size());
+    split.model_error += difference(sample, peer) / static_cast<double>(samples.size());
+  }
+  split.discretisation_error = difference(peer, limit);
+  split.geometry_error = difference(limit, truth);
+}
+
 /// The split of reaction_error; nothing where no support is moved.
 std::optional<ErrorSplit> split_of_reactions(const PreparedCase& prepared, const VoxelLimit& voxels,
-                                             const BodyLimit& body,
+                                             const Reference& body,
                                              const std::vector<std::map<std::string, double>>& samples,
                                              ErrorSplit split) {
   const std::map<std::string, double> truth = values_of(body.scalars), limit = values_of(voxels.limits);
@@ -106,12 +120,7 @@ std::optional<ErrorSplit> split_of_reactions(const PreparedCase& prepared, const
   if (samples.empty() || !reaction_difference(samples.front(), truth, body.scalars, patches, length)) return {};
   split.measure = "reaction_error";
   split.unit = unit_of(split.measure);
-  for (const auto& sample : samples) {
-    split.total += distance(sample, truth) / static_cast<double>(samples.size());
-    split.model_error += distance(sample, voxels.peer_values) / static_cast<double>(samples.size());
-  }
-  split.discretisation_error = distance(voxels.peer_values, limit);
-  split.geometry_error = distance(limit, truth);
+  set_parts(samples, voxels.peer_values, limit, truth, distance, split);
   split.uncertainty = distance(values_of(body.scalars, 1), truth);
   split.voxel_uncertainty = distance(values_of(voxels.limits, 1), limit);
   add_facets(prepared, 1, split);
@@ -154,7 +163,7 @@ ReferenceGrids solve_body_grids(const PreparedCase& prepared, const IsotropicMat
     if (lattice.tetrahedra) fitted.push_back(lattice.tetrahedra);
     std::vector<std::string> on_cubes = elements_of(e, 'q');
     std::erase_if(on_cubes, [&](const std::string& element) { return too_fine(*lattice.mesh, element); });
-    if (e.parts && std::find(on_cubes.begin(), on_cubes.end(), "q1") == on_cubes.end()) on_cubes.push_back("q1");
+    if (e.parts && std::ranges::find(on_cubes, "q1") == on_cubes.end()) on_cubes.push_back("q1");
     const std::vector<fem::Solution> cubes = solve_cubes(prepared, lattice, material, on_cubes, keeper);
     const auto refined = cubes.begin() + static_cast<std::ptrdiff_t>(std::min(on_cubes.size(), cubes.size()));
     out.peers.emplace_back(cubes.begin(), refined);
@@ -177,8 +186,7 @@ std::optional<VoxelLimit> voxel_limit(const PreparedCase& prepared, std::size_t 
   if (number >= grids.refined.size() || grids.refined[number].size() != 2) return {};
   const Lattice& lattice = prepared.lattices[number];
   const std::vector<fem::Solution>& peers = grids.peers[number];
-  const auto q1 =
-      std::find_if(peers.begin(), peers.end(), [](const fem::Solution& s) { return s.grid.element == "q1"; });
+  const auto q1 = std::ranges::find_if(peers, [](const fem::Solution& s) { return s.grid.element == "q1"; });
   const fem::Solution &h = grids.refined[number][0], &half = grids.refined[number][1];
   if (q1 == peers.end() || !q1->ok || !h.ok || !half.ok) return {};
   const fem::Solution& peer = *q1;
@@ -203,10 +211,9 @@ void without_staircase(const ErrorSplit& of_cubes, ErrorSplit& split) {
 }
 
 std::vector<ErrorSplit> split_error(const PreparedCase& prepared, const Lattice& lattice, const RunKey& key,
-                                    const VoxelLimit& voxels, const BodyLimit& body, const std::vector<NodalVectors>& u,
+                                    const VoxelLimit& voxels, const Reference& body, const std::vector<NodalVectors>& u,
                                     const std::vector<std::map<std::string, double>>& values) {
   const Experiment& e = prepared.experiment;
-  const double samples = static_cast<double>(u.size());
   ErrorSplit blank;
   static_cast<RunKey&>(blank) = key;
   blank.voxel_edge_m = lattice.voxel_edge;
@@ -220,12 +227,7 @@ std::vector<ErrorSplit> split_error(const PreparedCase& prepared, const Lattice&
   ErrorSplit field = blank;
   field.measure = "displacement_error";
   field.unit = unit_of(field.measure);
-  for (const NodalVectors& sample : u) {
-    field.total += distance(sample, body.field.displacement) / samples;
-    field.model_error += distance(sample, voxels.peer) / samples;
-  }
-  field.discretisation_error = distance(voxels.peer, voxels.limit);
-  field.geometry_error = distance(voxels.limit, body.field.displacement);
+  set_parts(u, voxels.peer, voxels.limit, body.field.displacement, distance, field);
   field.voxel_uncertainty = std::sqrt(weights.dot(voxels.nodal_uncertainty.cwiseAbs2()) / weights.sum()) / size;
   field.uncertainty = body.field.uncertainty;
   add_facets(prepared, 1, field);
@@ -240,12 +242,9 @@ std::vector<ErrorSplit> split_error(const PreparedCase& prepared, const Lattice&
     s.measure = measure;
     s.unit = unit_of(measure);
     const ReferenceValue& truth = body.scalars.at(measure);
-    double mean = 0;
-    for (const auto& sample : values) mean += sample.at(measure) / samples;
-    s.total = mean - truth.value;
-    s.model_error = mean - voxels.peer_values.at(measure);
-    s.discretisation_error = voxels.peer_values.at(measure) - limit.value;
-    s.geometry_error = limit.value - truth.value;
+    std::vector<double> of_samples;
+    for (const auto& sample : values) of_samples.push_back(sample.at(measure));
+    set_parts(of_samples, voxels.peer_values.at(measure), limit.value, truth.value, std::minus<>(), s);
     s.voxel_uncertainty = limit.uncertainty;
     s.uncertainty = truth.uncertainty;
     add_facets(prepared, std::abs(truth.value), s);

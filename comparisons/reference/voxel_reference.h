@@ -30,16 +30,9 @@ struct VoxelLimit {
 /// Nothing if one of the grids has no result.
 std::optional<VoxelLimit> voxel_limit(const PreparedCase& prepared, std::size_t lattice, const ReferenceGrids& grids);
 
-/// The body-fitted limit at the nodes of a lattice.
-struct BodyLimit {
-  const ReferenceField& field;
-  const std::map<std::string, ReferenceValue>& scalars;
-  const DisplacementScale& scale;
-};
-
 /// Splits the difference of one model from the body-fitted limit by source; `u` and `values` one per sample.
 std::vector<ErrorSplit> split_error(const PreparedCase& prepared, const Lattice& lattice, const RunKey& key,
-                                    const VoxelLimit& voxels, const BodyLimit& body, const std::vector<NodalVectors>& u,
+                                    const VoxelLimit& voxels, const Reference& body, const std::vector<NodalVectors>& u,
                                     const std::vector<std::map<std::string, double>>& values);
 
 /// Makes the split of a model of cut cells from that of the same model on whole cubes: no geometry, the same springs,

@@ -5,8 +5,7 @@
 #include <fstream>
 #include <random>
 
-#include "comparisons/models/external_points.h"
-#include "comparisons/models/scattered.h"
+#include "comparisons/models/external.h"
 #include "meshes/mesh.h"
 #include "problem/system/input_error.h"
 

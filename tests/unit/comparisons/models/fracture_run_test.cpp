@@ -9,7 +9,7 @@
 #include "comparisons/results/crack_picture.h"
 #include "comparisons/run/case_run.h"
 #include "comparisons/run/prepare.h"
-#include "comparisons/sweep/part_file.h"
+#include "comparisons/sweep/sweep.h"
 #include "problem/case_file/measures.h"
 
 namespace springproof::fracture_run_test {

@@ -8,7 +8,7 @@
 
 #include "comparisons/run/case_run.h"
 #include "comparisons/run/prepare.h"
-#include "comparisons/sweep/part_file.h"
+#include "comparisons/sweep/sweep.h"
 #include "support/case_file.h"
 
 namespace springproof::motion_run_test {

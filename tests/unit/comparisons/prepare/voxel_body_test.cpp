@@ -10,6 +10,7 @@
 #include <set>
 
 #include "comparisons/models/frequencies.h"
+#include "comparisons/prepare/load_resultants.h"
 #include "comparisons/prepare/sampling.h"
 #include "meshes/patches/rule_region.h"
 #include "meshes/volume.h"

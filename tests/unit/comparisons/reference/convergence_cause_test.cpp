@@ -1,5 +1,5 @@
 // Where a reference does not converge, its cause and a remedy are named.
-#include "comparisons/reference/convergence_cause.h"
+#include "comparisons/reference/reference_grids.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -7,7 +7,7 @@
 
 #include "comparisons/run/case_run.h"
 #include "comparisons/run/prepare.h"
-#include "comparisons/sweep/part_file.h"
+#include "comparisons/sweep/sweep.h"
 #include "fem_reference/exchange/reference.h"
 #include "problem/case_file/experiment.h"
 #include "problem/files/files.h"
@@ -28,9 +28,7 @@ struct Numbers {
       : keeper(folder, stamp, [this](const RunCost&, std::optional<double> t) { took.push_back(t); }) {}
 
   int run(const std::string& name, int number) {
-    return keeper.run(
-        name, {}, [&] { return ++made, number; }, [](int n) { return nlohmann::json(n); },
-        [](const nlohmann::json& n) { return n.get<int>(); });
+    return keeper.run(name, {}, [&] { return ++made, number; });
   }
 };
 
