@@ -7,7 +7,6 @@
 #include "comparisons/commands/commands.h"
 #include "comparisons/sweep/find_cases.h"
 #include "comparisons/sweep/suite.h"
-#include "comparisons/sweep/sweep_report.h"
 #include "problem/processes/child.h"
 #include "problem/system/input_error.h"
 
@@ -83,13 +82,13 @@ class ReportCommand {
   int run() const;
 
  private:
-  SweepReportOptions options_;
+  SuiteOptions options_;
+  bool partial_ = false;
 };
 
 void ReportCommand::add_options(CLI::App& command) {
-  command.add_option("FOLDER", options_.folder, "what `springproof compare --shard K/N --out FOLDER` wrote")
-      ->required();
-  command.add_flag("--partial", options_.partial,
+  command.add_option("FOLDER", options_.out, "what `springproof compare --shard K/N --out FOLDER` wrote")->required();
+  command.add_flag("--partial", partial_,
                    "also where parts are missing: a report of those that are there, with exit status 1");
   command.add_flag_callback(
       "--live", [this] { options_.live_page = live_page(); },
@@ -100,7 +99,7 @@ void ReportCommand::add_options(CLI::App& command) {
       "sweep.");
 }
 
-int ReportCommand::run() const { return report_sweep(options_); }
+int ReportCommand::run() const { return report_sweep(options_, partial_); }
 
 }  // namespace
 

@@ -29,11 +29,11 @@ void add_ride(const CaseResult& result, std::vector<std::string>& out) {
 /// Of large strain and of motions.
 void add_kinematics(const CaseResult& result, std::vector<std::string>& out) {
   const Experiment& e = result.experiment;
-  if (std::any_of(e.loads.begin(), e.loads.end(), is_pressure))
+  if (std::ranges::any_of(e.loads, is_pressure))
     out.push_back(
         "pressure_Pa is a dead load, per area at rest and against the normals at rest; a pressure that follows the "
         "surface, as that of a gas, gives another result");
-  if (e.dynamics && e.dynamics->damping > 0 && std::none_of(e.loads.begin(), e.loads.end(), prescribes_displacement))
+  if (e.dynamics && e.dynamics->damping > 0 && std::ranges::none_of(e.loads, prescribes_displacement))
     out.push_back(fmt::format(
         "damping in proportion to the mass (loss_factor, damping_1_s) also brakes what the free body does as "
         "a whole, its fall and its turning, at a rate of {:.3g}/s; viscosity_s alone does not",
@@ -53,19 +53,18 @@ void add_kinematics(const CaseResult& result, std::vector<std::string>& out) {
 void add_stressless(const CaseResult& result, std::vector<std::string>& out) {
   const auto of_stress = [](const auto& record) { return record.measure.starts_with("stress"); };
   const auto errors = [](const auto& record) { return record.measure.starts_with("stress_error"); };
-  if (std::none_of(result.references.begin(), result.references.end(), errors)) return;
+  if (std::ranges::none_of(result.references, errors)) return;
   std::vector<std::string> labels, all;
   for (const ModelChoice& model : result.experiment.models) all.push_back(model.label);
   for (const std::string& element : result.experiment.elements) all.push_back("fem_" + element);
   for (const std::string& label : all) {
     const auto own = [&](const Row& row) { return row.model == label; };
-    if (std::any_of(result.rows.begin(), result.rows.end(), own) &&
-        std::none_of(result.rows.begin(), result.rows.end(), [&](const Row& r) { return own(r) && of_stress(r); }))
+    if (std::ranges::any_of(result.rows, own) &&
+        std::ranges::none_of(result.rows, [&](const Row& r) { return own(r) && of_stress(r); }))
       labels.push_back(label);
   }
   const std::vector<std::string>& measures = result.experiment.measures;
-  const auto asked =
-      std::find_if(measures.begin(), measures.end(), [](const auto& m) { return m.starts_with("stress"); });
+  const auto asked = std::ranges::find_if(measures, [](const auto& m) { return m.starts_with("stress"); });
   if (asked != measures.end() && !labels.empty())
     out.push_back(fmt::format(
         "no {} of {}: stresses are recovered from averaged springs (hybmss_avg, and lattices in cut cells) at rest and "

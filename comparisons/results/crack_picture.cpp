@@ -38,8 +38,8 @@ struct Frame {
         y.insert(y.end(), {s.y0, s.y1});
       }
     if (x.empty()) return;
-    const auto [x_min, x_max] = std::minmax_element(x.begin(), x.end());
-    const auto [y_min, y_max] = std::minmax_element(y.begin(), y.end());
+    const auto [x_min, x_max] = std::ranges::minmax_element(x);
+    const auto [y_min, y_max] = std::ranges::minmax_element(y);
     size = std::max({*x_max - *x_min, *y_max - *y_min, 1e-300});
     left = (*x_min + *x_max - size) / 2;
     bottom = (*y_min + *y_max - size) / 2;

@@ -54,13 +54,11 @@ std::string to_csv(const std::vector<CaseResult>& results) {
     const std::vector<PublishedRow> printed = printed_values(result);
     const std::string listed = result.experiment.listed.region > 0 ? result.experiment.listed_words() : "";
     for (const Row& row : result.rows) {
-      const auto found =
-          std::find_if(printed.begin(), printed.end(), [&](const PublishedRow& p) { return printed_for(p, row); });
+      const auto found = std::ranges::find_if(printed, [&](const PublishedRow& p) { return printed_for(p, row); });
       out += csv_line(row, found == printed.end() ? nullptr : &*found, listed);
     }
     for (const PublishedRow& p : printed) {
-      const bool has_row =
-          std::any_of(result.rows.begin(), result.rows.end(), [&](const Row& row) { return printed_for(p, row); });
+      const bool has_row = std::ranges::any_of(result.rows, [&](const Row& row) { return printed_for(p, row); });
       const double ours = p.computed.value_or(std::nan(""));
       if (!has_row)
         out += csv_line({p, result.experiment.name, result.experiment.kinematics, p.measure, ours, p.unit, {}, {}, {}},

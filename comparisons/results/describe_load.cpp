@@ -29,7 +29,7 @@ std::string components(const std::vector<std::string>& axes) {
   return fmt::format("{} and {}", fmt::join(head, ", "), axes.back());
 }
 
-std::string sentence(const PrescribedDisplacement& load, Units units) {
+std::string sentence(const PrescribedDisplacement& load, Units units, Kinematics) {
   std::vector<std::string> held, moved, free;
   for (int c = 0; c < 3; ++c) {
     const std::string axis(1, "xyz"[c]);
@@ -53,23 +53,23 @@ std::string sentence(const PrescribedDisplacement& load, Units units) {
   return fmt::format("{}: {}", load.on, fmt::join(parts, ", "));
 }
 
-std::string sentence(const PrescribedAffine& load, Units units) {
+std::string sentence(const PrescribedAffine& load, Units units, Kinematics) {
   const auto& A = load.gradient;
   return fmt::format("{}: moved by u = A X + b with the rows of A {} {} {} and b = {}", load.on,
                      text(A.row(0).transpose()), text(A.row(1).transpose()), text(A.row(2).transpose()),
                      text(load.offset, units, "m"));
 }
 
-std::string sentence(const PrescribedRotation& load, Units units) {
+std::string sentence(const PrescribedRotation& load, Units units, Kinematics) {
   return fmt::format("{}: turned by {:.6g} degrees about the axis {} through {}", load.on,
                      load.angle * 180 / std::numbers::pi, text(load.axis), text(load.point, units, "m"));
 }
 
-std::string sentence(const PrescribedField& load, Units) {
+std::string sentence(const PrescribedField& load, Units, Kinematics) {
   return fmt::format("{}: moved by the exact field '{}'", load.on, load.field);
 }
 
-std::string sentence(const FieldBodyForce& load, Units) {
+std::string sentence(const FieldBodyForce& load, Units, Kinematics) {
   return fmt::format("whole body: the body force of the exact field '{}'", load.field);
 }
 
@@ -79,19 +79,19 @@ std::string sentence(const Pressure& load, Units units, Kinematics kinematics) {
       kinematics == Kinematics::linear ? "" : ", a dead load: per area at rest, against the outward normals at rest");
 }
 
-std::string sentence(const Traction& load, Units units) {
+std::string sentence(const Traction& load, Units units, Kinematics) {
   return fmt::format("{}: loaded by a traction of {}", load.on, text(load.traction, units, "Pa"));
 }
 
-std::string sentence(const PatchForce& load, Units) {
+std::string sentence(const PatchForce& load, Units, Kinematics) {
   return fmt::format("{}: loaded by a total force of {} N", load.on, text(load.force));
 }
 
-std::string sentence(const Gravity& load, Units units) {
+std::string sentence(const Gravity& load, Units units, Kinematics) {
   return fmt::format("whole body: gravity of {}", text(load.acceleration, units, "m/s²"));
 }
 
-std::string sentence(const PointForce& load, Units units) {
+std::string sentence(const PointForce& load, Units units, Kinematics) {
   return fmt::format("point {}: loaded by a force of {} N", text(load.at, units, "m"), text(load.force));
 }
 
@@ -117,14 +117,7 @@ LoadMark mark(const Load& load) {
 }
 
 std::string describe(const Load& load, Kinematics kinematics, Units units) {
-  return std::visit(
-      [&](const auto& l) {
-        if constexpr (std::is_same_v<std::decay_t<decltype(l)>, Pressure>)
-          return sentence(l, units, kinematics);
-        else
-          return sentence(l, units);
-      },
-      load);
+  return std::visit([&](const auto& l) { return sentence(l, units, kinematics); }, load);
 }
 
 std::string describe(const AttachedMass& mass, Units units) {

@@ -22,14 +22,6 @@ struct Words {
   std::string operator()(const std::vector<double>& v) const { return fmt::format("({:.3g})", fmt::join(v, ", ")); }
 };
 
-struct ToJson {
-  nlohmann::json operator()(std::monostate) const { return nullptr; }
-  template <class T>
-  nlohmann::json operator()(const T& value) const {
-    return value;
-  }
-};
-
 std::string line_of(const FactRow& row, std::size_t width) {
   std::string line = fmt::format("  {:<{}}", row.label, width);
   for (const Fact& fact : row.facts) line += " " + std::visit(Words{row.unit == "%"}, fact.value);
@@ -58,7 +50,12 @@ nlohmann::json json_of(const std::vector<FactGroup>& groups) {
   nlohmann::json out = nlohmann::json::object();
   for (const FactGroup& group : groups)
     for (const FactRow& row : group.rows)
-      for (const Fact& fact : row.facts) out[nlohmann::json::json_pointer(fact.key)] = std::visit(ToJson{}, fact.value);
+      for (const Fact& fact : row.facts)
+        std::visit(
+            [&at = out[nlohmann::json::json_pointer(fact.key)]](const auto& value) {
+              if constexpr (!std::is_same_v<decltype(value), const std::monostate&>) at = value;
+            },
+            fact.value);
   return out;
 }
 

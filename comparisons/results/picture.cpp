@@ -66,7 +66,7 @@ void add_facets(const Mesh& mesh, Picture& p, const Add& add) {
     std::vector<int>& nodes = p.patches[patch.name];
     for (int n : nodes_of(patch))
       if (number[n] >= 0) nodes.push_back(number[n]);
-    std::sort(nodes.begin(), nodes.end());
+    std::ranges::sort(nodes);
   }
 }
 
@@ -106,7 +106,7 @@ std::vector<int> representatives(const NodalVectors& points, const std::vector<T
   for (const auto& [cube, nodes] : cubes) {
     Eigen::RowVector3d mean = Eigen::RowVector3d::Zero();
     for (int n : nodes) mean += points.row(n) / double(nodes.size());
-    const int chosen = *std::min_element(nodes.begin(), nodes.end(), [&](int a, int b) {
+    const int chosen = *std::ranges::min_element(nodes, [&](int a, int b) {
       return (points.row(a) - mean).squaredNorm() < (points.row(b) - mean).squaredNorm();
     });
     for (int n : nodes) of[n] = chosen;
@@ -167,7 +167,7 @@ std::vector<std::array<int, 4>> thinned(const NodalVectors& points, const std::v
     for (const auto& [a, b, c] : triangles) {
       const Triangle t = {of[a], of[b], of[c]};
       Triangle key = t;
-      std::sort(key.begin(), key.end());
+      std::ranges::sort(key);
       if (key[0] == key[1] || key[1] == key[2] || !seen.insert(key).second) continue;
       kept.push_back({t[0], t[1], t[2], -1});
     }

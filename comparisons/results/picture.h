@@ -1,4 +1,4 @@
-// The deformed surface of a field, for the report's 3D view.
+// The deformed surface of a field, for the report's 3D view, and a plane section through a body of several materials.
 #pragma once
 
 #include <array>
@@ -28,5 +28,13 @@ NodalVectors pictured_points(const Mesh& mesh);
 /// represents all.  Features thinner than a cube may be lost; for display only.
 std::vector<std::array<int, 4>> thinned(const NodalVectors& points, const std::vector<std::array<int, 4>>& facets,
                                         std::size_t most = 20000);
+
+/// Colours of materials 0, 1, ...; again from the second on where there are more.
+const char* material_colour(std::size_t material);
+
+/// SVG of the section, across one of the axes and through the centroid of all regions, that shows most materials, and
+/// of these most of the regions.  Each material is filled with its colour.
+/// @param body with materials
+std::string section_svg(const Mesh& body);
 
 }  // namespace springproof

@@ -1,13 +1,12 @@
 // Pictures as JSON: what the report's 3D view reads.
 #include <fmt/format.h>
 
+#include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
-#include <type_traits>
 
 #include "comparisons/results/records.h"
 #include "problem/files/encoding.h"
@@ -17,21 +16,11 @@ namespace {
 
 using Json = nlohmann::json;
 
-template <class T>
-void append_little_endian(T value, std::vector<std::uint8_t>& bytes) {
-  for (std::size_t i = 0; i < sizeof(T); ++i) bytes.push_back(static_cast<std::uint8_t>(value >> (8 * i)));
-}
+static_assert(std::endian::native == std::endian::little);  // as the report reads them
 
-std::string base64_floats(const std::vector<float>& values) {
-  std::vector<std::uint8_t> bytes;
-  bytes.reserve(4 * values.size());
-  for (float value : values) {
-    std::uint32_t bits;
-    static_assert(sizeof bits == sizeof value);
-    std::memcpy(&bits, &value, sizeof bits);
-    append_little_endian(bits, bytes);
-  }
-  return base64(bytes.data(), bytes.size());
+template <class Number>
+std::string base64_of(const std::vector<Number>& numbers) {
+  return base64(numbers.data(), numbers.size() * sizeof(Number));
 }
 
 /// Multiples of `scale` as Integers, the smallest of which is no number: 16 bits for places, exact to 1/65000 of the
@@ -43,29 +32,23 @@ Json multiples_json(const std::vector<float>& values) {
   for (float value : values)
     if (std::isfinite(value)) largest = std::max<double>(largest, std::abs(value));
   const double scale = largest > 0 ? largest / Limits::max() : 1;
-  std::vector<std::uint8_t> bytes;
-  bytes.reserve(sizeof(Integer) * values.size());
-  for (float value : values) {
-    const long steps = std::isfinite(value) ? std::lround(value / scale) : Limits::min();
-    append_little_endian(static_cast<std::make_unsigned_t<Integer>>(steps), bytes);
-  }
-  return {{"scale", scale}, {"base64", base64(bytes.data(), bytes.size())}};
+  std::vector<Integer> steps;
+  for (float value : values)
+    steps.push_back(static_cast<Integer>(std::isfinite(value) ? std::lround(value / scale) : Limits::min()));
+  return {{"scale", scale}, {"base64", base64_of(steps)}};
 }
 
 /// Triangles (fourth number -1) repeat their last corner.
 Json quads_json(const std::vector<int>& quads, std::size_t nodes) {
-  const bool small = nodes <= 65536;
-  std::vector<std::uint8_t> bytes;
+  std::vector<std::uint32_t> corners;
   for (std::size_t i = 0; i < quads.size(); ++i) {
     const int node = i % 4 == 3 && quads[i] < 0 ? quads[i - 1] : quads[i];
     if (node < 0 || static_cast<std::size_t>(node) >= nodes)
       throw std::invalid_argument(fmt::format("picture: facet names node {} of {}", node, nodes));
-    if (small)
-      append_little_endian(static_cast<std::uint16_t>(node), bytes);
-    else
-      append_little_endian(static_cast<std::uint32_t>(node), bytes);
+    corners.push_back(static_cast<std::uint32_t>(node));
   }
-  return {{"type", small ? "uint16" : "uint32"}, {"base64", base64(bytes.data(), bytes.size())}};
+  if (nodes > 65536) return {{"type", "uint32"}, {"base64", base64_of(corners)}};
+  return {{"type", "uint16"}, {"base64", base64_of(std::vector<std::uint16_t>(corners.begin(), corners.end()))}};
 }
 
 /// Of the patches that a load acts on, the surface nodes.
@@ -103,7 +86,7 @@ Json pictures_to_json(const CaseResult& result) {
     while (mesh < owners.size() && (owners[mesh]->rest != p.rest || owners[mesh]->quads != p.quads)) ++mesh;
     if (mesh == owners.size()) {
       owners.push_back(&p);
-      meshes.push_back({{"rest", base64_floats(p.rest)},
+      meshes.push_back({{"rest", base64_of(p.rest)},
                         {"quads", quads_json(p.quads, p.rest.size() / 3)},
                         {"patches", patches_json(p, result.experiment.loads)}});
     }

@@ -94,8 +94,7 @@ double cell_count(const Cells& cells) {
 }
 
 double size_ratio(const Cells& coarse, const Cells& fine, const Cells& finest) {
-  const auto refined =
-      is_tetrahedra(finest) ? 3 : std::count_if(finest.begin(), finest.end(), [](int n) { return n > 1; });
+  const auto refined = is_tetrahedra(finest) ? 3 : std::ranges::count_if(finest, [](int n) { return n > 1; });
   return std::pow(cell_count(fine) / cell_count(coarse), 1.0 / static_cast<double>(std::max(refined, 1L)));
 }
 

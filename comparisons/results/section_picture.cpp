@@ -1,4 +1,4 @@
-#include "comparisons/results/section_picture.h"
+#include "comparisons/results/picture.h"
 
 #include <fmt/format.h>
 
@@ -47,7 +47,7 @@ std::vector<Point> crossing(const SectionPlane& plane, const NodalVectors& nodes
     }
   middle /= std::max<double>(1, static_cast<double>(points.size()));
   const auto angle = [&](const Point& p) { return std::atan2(p[1] - middle[1], p[0] - middle[0]); };
-  std::sort(points.begin(), points.end(), [&](const Point& a, const Point& b) { return angle(a) < angle(b); });
+  std::ranges::sort(points, [&](const Point& a, const Point& b) { return angle(a) < angle(b); });
   return points;
 }
 
@@ -111,8 +111,7 @@ std::string drawing(const std::vector<Piece>& pieces) {
   const double scale = picture_width / (high - low).maxCoeff();
   std::array<std::string, colours.size()> paths;
   for (const Piece& piece : pieces) {
-    std::string& path =
-        paths[std::find(colours.begin(), colours.end(), material_colour(piece.material)) - colours.begin()];
+    std::string& path = paths[std::ranges::find(colours, material_colour(piece.material)) - colours.begin()];
     char command = 'M';
     for (const Point& p : piece.corners) {
       path += fmt::format("{}{:.1f} {:.1f}", command, scale * (p[0] - low[0]), scale * (high[1] - p[1]));

@@ -5,29 +5,20 @@
 namespace springproof {
 namespace {
 
-/// Numbers of one record, whose unit is theirs in SI until they are given in other units.
-class Given {
- public:
-  Given(Units units, std::string& unit) : in_(unit_in(units, unit)) { unit = in_.name; }
+void divide(double& x, double by) { x /= by; }
+void divide(std::optional<double>& x, double by) {
+  if (x) *x /= by;
+}
+void divide(std::vector<double>& all, double by) {
+  for (double& x : all) x /= by;
+}
 
-  void operator()(double& x) const {
-    if (in_.in_si != 1) x /= in_.in_si;
-  }
-  void operator()(std::optional<double>& x) const {
-    if (x) (*this)(*x);
-  }
-  void operator()(std::vector<double>& all) const {
-    for (double& x : all) (*this)(x);
-  }
-
- private:
-  Named in_;
-};
-
+/// Numbers of one record, whose unit is theirs in SI until they are given in that of the case.
 template <class... Numbers>
 void give(Units units, std::string& unit, Numbers&... numbers) {
-  const Given given(units, unit);
-  (given(numbers), ...);
+  const Named in = unit_in(units, unit);
+  unit = in.name;
+  if (in.in_si != 1) (divide(numbers, in.in_si), ...);
 }
 
 }  // namespace

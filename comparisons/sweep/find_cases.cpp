@@ -23,7 +23,7 @@ std::vector<fs::path> toml_files(const fs::path& folder) {
   for (Iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
     if (entry->path().extension() == ".toml") files.push_back(entry->path());
   if (error) throw InputError(shortened(fmt::format("{}: cannot be read: {}", folder.string(), error.message())));
-  std::sort(files.begin(), files.end());
+  std::ranges::sort(files);
   return files;
 }
 
@@ -33,12 +33,12 @@ const fs::path& no_body(const fs::path& file) {
                                                   ".dae", ".gltf", ".glb", ".sldprt", ".blend", ".inp",  ".nas"};
   const auto& bodies = body_file_endings();
   const std::string ending = extension_of(file);
-  if (std::find(unread.begin(), unread.end(), ending) != unread.end())
+  if (std::ranges::find(unread, ending) != unread.end())
     throw InputError(shortened(
         fmt::format("{} is no case (allowed: NAME.toml); as bodies of cases {} files are read, and programs such as "
                     "MeshLab, Blender or FreeCAD convert to one of these",
                     file.string(), fmt::join(bodies, ", "))));
-  if (std::find(bodies.begin(), bodies.end(), ending) == bodies.end()) return file;
+  if (std::ranges::find(bodies, ending) == bodies.end()) return file;
   throw InputError(shortened(fmt::format("{} is a body (allowed: a case, NAME.toml, in which [body] has geo = \"{}\")",
                                          file.string(), file.filename().string())));
 }
@@ -78,8 +78,7 @@ std::vector<fs::path> find_cases(const std::vector<std::string>& names) {
                                 name, why)));
     for (const fs::path& file : found) {
       std::error_code ignored;
-      if (std::none_of(cases.begin(), cases.end(),
-                       [&](const fs::path& c) { return c == file || fs::equivalent(c, file, ignored); }))
+      if (std::ranges::none_of(cases, [&](const fs::path& c) { return c == file || fs::equivalent(c, file, ignored); }))
         cases.push_back(file);
     }
   }
@@ -89,7 +88,7 @@ std::vector<fs::path> find_cases(const std::vector<std::string>& names) {
 Experiment only(const std::vector<double>& wanted, Experiment e) {
   if (wanted.empty()) return e;
   const auto left_out = [&](double nu) {
-    return std::none_of(wanted.begin(), wanted.end(), [&](double w) { return same_poisson_ratio(w, nu); });
+    return std::ranges::none_of(wanted, [&](double w) { return same_poisson_ratio(w, nu); });
   };
   const std::vector<double> has = e.settings();
   e.leave_out_settings(left_out);

@@ -1,4 +1,4 @@
-#include "comparisons/sweep/part_file.h"
+#include "comparisons/sweep/sweep.h"
 
 #include <string_view>
 
@@ -6,7 +6,7 @@
 
 namespace springproof {
 
-// File format: this heading (problem/files/checked_file.h), then the stamp and the part.
+// File format: this heading (problem/files/new_file.h), then the stamp and the part.
 static constexpr std::string_view part_heading = "springproof part 4 ";
 
 void save_part(const std::filesystem::path& file, const std::string& stamp, const Part& part) {

@@ -38,7 +38,7 @@ std::size_t terminal_width() {
 /// Characters, not bytes, of UTF-8.
 bool begins_character(char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }
 std::size_t length(const std::string& text) {
-  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), begins_character));
+  return static_cast<std::size_t>(std::ranges::count_if(text, begins_character));
 }
 
 std::string cut(const std::string& text, std::size_t width) {
@@ -120,20 +120,14 @@ Status::Status(bool quiet, std::function<std::optional<double>()> left)
   if (quiet_) return;
   first_begun();
   if (terminal_) clear_on_death();
-  thread_ = std::thread([this] {
+  thread_ = std::jthread([this](const std::stop_token& ended) {
     std::unique_lock lock(mutex_);
-    while (!ended_.wait_for(lock, rewrite_every, [this] { return end_; })) show();
+    while (!wake_.wait_for(lock, ended, rewrite_every, [&] { return ended.stop_requested(); })) show();
   });
 }
 
 Status::~Status() {
-  if (!thread_.joinable()) return;
-  {
-    const std::lock_guard lock(mutex_);
-    end_ = true;
-  }
-  ended_.notify_one();
-  thread_.join();
+  thread_ = {};
   if (line_is_shown_) to_stderr(clear_line);
 }
 

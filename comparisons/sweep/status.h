@@ -62,10 +62,10 @@ class Status {
   const bool quiet_, terminal_;
   const std::function<std::optional<double>()> left_;
   std::mutex mutex_;
-  std::condition_variable ended_;
-  bool end_ = false, line_is_shown_ = false;
+  std::condition_variable_any wake_;
+  bool line_is_shown_ = false;
   std::list<Entry> entries_;
-  std::thread thread_;
+  std::jthread thread_;  ///< last: it ends before what it uses
 };
 
 class Status::Working {

@@ -10,14 +10,13 @@
 #include <thread>
 #include <utility>
 
-#include "comparisons/prepare/input_checksum.h"
+#include "comparisons/prepare/prepared_case.h"
 #include "comparisons/report/stability_words.h"
 #include "comparisons/run/case_run.h"
 #include "comparisons/run/expected_runs.h"
 #include "comparisons/run/prepare.h"
 #include "comparisons/sweep/find_cases.h"
 #include "comparisons/sweep/folder_lock.h"
-#include "comparisons/sweep/part_file.h"
 #include "comparisons/sweep/status.h"
 #include "comparisons/sweep/suite_results.h"
 #include "comparisons/sweep/sweep.h"
@@ -185,7 +184,7 @@ class Progress {
     const std::lock_guard lock(mutex_);
     ++count_;
     const auto& runs = tasks_[task].part.runs;
-    const auto failed = std::count_if(runs.begin(), runs.end(), [](const Run& r) { return !r.ok; });
+    const auto failed = std::ranges::count_if(runs, [](const Run& r) { return !r.ok; });
     std::string remark = taken_back ? "kept from before" : fmt::format("{:.1f} s", seconds);
     if (failed) remark += fmt::format(", {} run{} without a result", failed, failed == 1 ? "" : "s");
     if (!quiet_) status_.print(fmt::format("[{}/{}] {:<44} {}", count_, tasks_.size(), tasks_[task].title, remark));
@@ -310,7 +309,7 @@ int run_shard(const std::vector<fs::path>& files, const SuiteOptions& options) {
                       fmt::format("--shard: {}/{} is at work in {} already (wait for its end)", number, count, out));
   std::erase_if(cases, [&, shard = number](const Experiment& e) {
     const std::vector<PlannedPart>& parts = case_of_key(sweep, key_of(e.file)).parts;
-    return std::none_of(parts.begin(), parts.end(), [&](const PlannedPart& p) { return p.shard == shard; });
+    return std::ranges::none_of(parts, [&](const PlannedPart& p) { return p.shard == shard; });
   });
   const std::vector<PreparedCase> prepared = prepare_all(cases, options);
   if (children_interrupted()) return interrupted_status;
@@ -342,10 +341,7 @@ int run_all(const std::vector<fs::path>& files, const SuiteOptions& options) {
     for (const Task& task : tasks)
       if (task.prepared == &p) append(task.part, results.back());
   }
-  return write_results(std::move(results), plan.libraries,
-                       {options.out, options.vtu, options.gltf, options.live_page, options.verbose})
-             ? 0
-             : 1;
+  return write_results(std::move(results), plan.libraries, options) ? 0 : 1;
 }
 
 }  // namespace

@@ -18,11 +18,10 @@
 #include "comparisons/report/headline.h"
 #include "comparisons/report/report.h"
 #include "comparisons/results/crack_picture.h"
-#include "comparisons/results/section_picture.h"
+#include "comparisons/results/picture.h"
 #include "comparisons/sweep/find_cases.h"
 #include "meshes/volume.h"
 #include "msm/parameters/made_of.h"
-#include "problem/case_file/external.h"
 #include "problem/files/file_name.h"
 #include "problem/files/files.h"
 #include "problem/system/streams.h"
@@ -110,7 +109,7 @@ const char* law_of(StrainCurve curve) {
 
 std::string key_of(const fs::path& file) {
   std::string key = case_name(file);
-  std::replace(key.begin(), key.end(), '/', '-');
+  std::ranges::replace(key, '/', '-');
   return file_name(key);
 }
 
@@ -148,14 +147,14 @@ void append(const Part& from, Part& to) {
   append(from.varied, to.varied);
 }
 
-bool write_results(std::vector<CaseResult> results, const std::string& libraries, const ResultsChoice& choice) {
-  const fs::path& out = choice.out;
-  if (!choice.live_page.empty()) write_file(out / "live.html", text_of_file(choice.live_page));
+bool write_results(std::vector<CaseResult> results, const std::string& libraries, const SuiteOptions& options) {
+  const fs::path& out = options.out;
+  if (!options.live_page.empty()) write_file(out / "live.html", text_of_file(options.live_page));
   for (CaseResult& r : results) {
     validate(r);
     judge(r);
-    if (choice.vtu) write_series(r, out / "vtu" / key_of(r.experiment.file));
-    if (choice.gltf) write_gltf(r, out / "gltf" / key_of(r.experiment.file));
+    if (options.vtu) write_series(r, out / "vtu" / key_of(r.experiment.file));
+    if (options.gltf) write_gltf(r, out / "gltf" / key_of(r.experiment.file));
   }
   const std::vector<KnownQuantity> known = known_quantities(results);
   for (CaseResult& r : results) give_in_units_of_case(r);
@@ -168,7 +167,7 @@ bool write_results(std::vector<CaseResult> results, const std::string& libraries
   const Headline h = headline(results);
   write_report(out / "report.html", h, doc, pictures);
   for (const CaseResult& r : results) to_stdout("{}", validation_table(r));
-  to_stdout("{}{}report: {}\n", terminal_text(h, choice.verbose), calibration_table(known),
+  to_stdout("{}{}report: {}\n", terminal_text(h, options.verbose), calibration_table(known),
             (out / "report.html").string());
   return success(h);
 }

@@ -7,6 +7,7 @@
 
 #include "comparisons/prepare/prepared_case.h"
 #include "comparisons/results/records.h"
+#include "comparisons/sweep/suite.h"
 
 namespace springproof {
 
@@ -18,18 +19,9 @@ CaseResult case_of(const PreparedCase& prepared);
 
 void append(const Part& from, Part& to);
 
-/// Where results go, beside results.csv, results.json and report.html.
-struct ResultsChoice {
-  std::filesystem::path out;
-  bool vtu = false;                 ///< series of the VTU files in out/vtu are written
-  bool gltf = false;                ///< the deformed surfaces go to out/gltf
-  std::filesystem::path live_page;  ///< copied beside the report, which links it; empty: none
-  bool verbose = false;             ///< a sentence on every model is printed
-};
-
-/// Judges the cases, whose parts are appended, and writes and prints the results.
+/// Judges the cases, whose parts are appended, and writes and prints the results as the options say.
 /// @param libraries of the reference
 /// @return whether every expectation holds and every case was compared.
-bool write_results(std::vector<CaseResult> results, const std::string& libraries, const ResultsChoice& choice);
+bool write_results(std::vector<CaseResult> results, const std::string& libraries, const SuiteOptions& options);
 
 }  // namespace springproof

@@ -10,7 +10,6 @@
 #include <string_view>
 
 #include "comparisons/results/records_json.h"
-#include "problem/files/checked_file.h"
 #include "problem/system/input_error.h"
 #include "problem/system/json.h"
 #include "problem/system/shortened.h"
@@ -54,35 +53,26 @@ std::string made_by(const Sweep& s) {
 void require_same(const fs::path& folder, const Sweep& there, const Sweep& own) {
   const std::string name = folder.string();
   if (there.shards != own.shards)
-    throw InputError(
-        fmt::format("--shard: is one of {}, but {} holds a sweep of {} shards (allowed: 1/{} to {}/{}, or "
-                    "another --out)",
-                    own.shards, name, there.shards, there.shards, there.shards, there.shards));
+    throw InputError(fmt::format(
+        "--shard: is one of {0}, but {1} holds a sweep of {2} shards (allowed: 1/{2} to {2}/{2}, or another "
+        "--out)",
+        own.shards, name, there.shards));
+  const auto refuse = [&](const std::string& what, const char* allowed) {
+    throw InputError(fmt::format("--out: {} holds a sweep {} (allowed: {}, or another --out)", name, what, allowed));
+  };
   if (made_by(there) != made_by(own))
-    throw InputError(
-        fmt::format("--out: {} holds a sweep of {}, this is {} (allowed: the same on every machine, or "
-                    "another --out)",
-                    name, made_by(there), made_by(own)));
+    refuse(fmt::format("of {}, this is {}", made_by(there), made_by(own)), "the same on every machine");
   const auto parts_there = parts_of(there), parts_here = parts_of(own);
   for (const auto& [file, part] : parts_here)
-    if (!parts_there.contains(file))
-      throw InputError(
-          fmt::format("--out: {} holds a sweep without {} (allowed: the same cases in every shard, or "
-                      "another --out)",
-                      name, part.title));
+    if (!parts_there.contains(file)) refuse("without " + part.title, "the same cases in every shard");
   for (const auto& [file, part] : parts_there) {
     const auto here = parts_here.find(file);
-    if (here == parts_here.end())
-      throw InputError(
-          fmt::format("--out: {} holds a sweep with {} too (allowed: the same cases in every shard, or "
-                      "another --out)",
-                      name, part.title));
+    if (here == parts_here.end()) refuse(fmt::format("with {} too", part.title), "the same cases in every shard");
     if (here->second.stamp != part.stamp)
-      throw InputError(
-          fmt::format("--out: {} holds a sweep in which {} is computed from other inputs: the case, its "
-                      "body's files, --finer or --vtu differ (allowed: the same in every shard, or another "
-                      "--out)",
-                      name, part.title));
+      refuse(
+          fmt::format("in which {} is computed from other inputs: the case, its body's files, --finer or --vtu differ",
+                      part.title),
+          "the same in every shard");
   }
 }
 
@@ -154,7 +144,7 @@ Shard parse_shard(const std::string& text) {
 std::vector<std::size_t> longest_first(const std::vector<double>& seconds) {
   std::vector<std::size_t> order(seconds.size());
   std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return seconds[a] > seconds[b]; });
+  std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return seconds[a] > seconds[b]; });
   return order;
 }
 
@@ -162,7 +152,7 @@ std::vector<int> shards_of(const std::vector<double>& expected_seconds, int coun
   std::vector<double> load(static_cast<std::size_t>(count), 0.0);
   std::vector<int> shards(expected_seconds.size());
   for (const std::size_t part : longest_first(expected_seconds)) {
-    const auto least = std::min_element(load.begin(), load.end());
+    const auto least = std::ranges::min_element(load);
     *least += expected_seconds[part];
     shards[part] = static_cast<int>(least - load.begin()) + 1;
   }

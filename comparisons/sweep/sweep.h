@@ -2,10 +2,12 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "comparisons/results/records.h"
+#include "problem/files/new_file.h"
 
 namespace springproof {
 
@@ -13,7 +15,7 @@ namespace springproof {
 struct PlannedPart {
   double poisson_ratio = 0;
   std::string file;   ///< in the folder's parts/
-  std::string stamp;  ///< identifies its inputs (comparisons/sweep/part_file.h)
+  std::string stamp;  ///< identifies its inputs, save_part()
   int shard = 0;      ///< that computes it
 };
 
@@ -50,6 +52,13 @@ void save_meshed(const std::filesystem::path& folder, const std::string& key, co
 
 /// @return whether it is there, and whole.
 bool load_meshed(const std::filesystem::path& folder, const std::string& key, MeshedCase& meshed);
+
+/// `stamp` identifies the inputs of the part; a part is only loaded with the same stamp.
+void save_part(const std::filesystem::path& file, const std::string& stamp, const Part& part);
+
+/// Nothing if there is no such file or its stamp differs.
+/// @throws DamagedFile
+std::optional<Part> load_part(const std::filesystem::path& file, const std::string& stamp);
 
 /// "golec_2019/bending  nu0.3"
 std::string title_of(const PlannedCase& planned, const PlannedPart& part);

@@ -1,5 +1,3 @@
-#include "comparisons/sweep/sweep_report.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -10,7 +8,7 @@
 
 #include "comparisons/sweep/find_cases.h"
 #include "comparisons/sweep/folder_lock.h"
-#include "comparisons/sweep/part_file.h"
+#include "comparisons/sweep/suite.h"
 #include "comparisons/sweep/suite_results.h"
 #include "comparisons/sweep/sweep.h"
 #include "problem/system/streams.h"
@@ -77,26 +75,25 @@ void say(const Missing& missing, const Sweep& sweep, const fs::path& folder) {
 
 }  // namespace
 
-int report_sweep(const SweepReportOptions& options) {
-  const FolderLock lock(options.folder, FolderLock::beside_shards);
-  const Sweep sweep = read_plan(options.folder);
+int report_sweep(SuiteOptions options, bool partial) {
+  const FolderLock lock(options.out, FolderLock::beside_shards);
+  const Sweep sweep = read_plan(options.out);
   const ByteLock one_report(
-      sweep_file(options.folder), 0,
-      fmt::format("{}: another springproof writes its report (wait for its end)", options.folder.string()));
+      sweep_file(options.out), 0,
+      fmt::format("{}: another springproof writes its report (wait for its end)", options.out.string()));
   Missing missing;
   std::vector<CaseResult> results;
-  for (const PlannedCase& planned : sweep.cases) results.push_back(collect(options.folder, sweep, planned, missing));
-  say(missing, sweep, options.folder);
+  for (const PlannedCase& planned : sweep.cases) results.push_back(collect(options.out, sweep, planned, missing));
+  say(missing, sweep, options.out);
   std::vector<int> shards;
   for (const auto& [shard, titles] : missing) shards.push_back(shard);
-  if (!missing.empty() && !options.partial)
+  if (!missing.empty() && !partial)
     throw InputError(
         fmt::format("{}: parts are missing (start shard{} {} again, or add --partial for a report of what "
                     "is there)",
-                    options.folder.string(), shards.size() == 1 ? "" : "s", fmt::join(shards, ",")));
-  const bool success =
-      write_results(std::move(results), sweep.libraries, {options.folder, sweep.vtu, false, options.live_page});
-  return success && missing.empty() ? 0 : 1;
+                    options.out.string(), shards.size() == 1 ? "" : "s", fmt::join(shards, ",")));
+  options.vtu = sweep.vtu;
+  return write_results(std::move(results), sweep.libraries, options) && missing.empty() ? 0 : 1;
 }
 
 }  // namespace springproof
