@@ -84,8 +84,8 @@ install_missing
 if [ "${1:-}" = test ]; then
   shift
   build all
-  # Without those that take another compiler or many minutes: ctest --test-dir build/release -L long (or recipe, fuzz, hostile)
-  step test "running the tests, $(nproc) at a time" ctest --test-dir build/release --output-on-failure -j "$(nproc)" -LE "long|recipe|fuzz|hostile" "$@"
+  # Without those that take another compiler or many minutes: ctest --test-dir build/release -L long (or bodies, recipe, fuzz, hostile)
+  step test "running the tests, $(nproc) at a time" ctest --test-dir build/release --output-on-failure -j "$(nproc)" -LE "long|bodies|recipe|fuzz|hostile" "$@"
   say_what_did_not_run
 elif [ "${1:-}" = python ]; then
   build springproof springproof-mesh springproof-fem springproof-python
