@@ -163,7 +163,8 @@ Advice advise(const Forecast& forecast, const Wish& wish) {
   Advice out;
   out.forecast = forecast;
   out.wish = wish;
-  out.machine = this_machine();
+  const std::string processor = processor_name();
+  out.machine = (processor.empty() ? "this machine" : processor) + ", one core";
   Costs costs(out.forecast);
   for (const std::string& model : forecast.models) {
     if (!wish.models.empty() && std::find(wish.models.begin(), wish.models.end(), row_of(model)) == wish.models.end())

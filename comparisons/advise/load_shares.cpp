@@ -1,4 +1,4 @@
-#include "comparisons/advise/load_shares.h"
+#include "comparisons/advise/pilot.h"
 
 #include <Eigen/Dense>
 #include <algorithm>

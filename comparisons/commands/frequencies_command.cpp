@@ -21,6 +21,7 @@
 #include "problem/files/files.h"
 #include "problem/processes/child.h"
 #include "problem/processes/interrupts.h"
+#include "problem/system/json.h"
 #include "problem/system/streams.h"
 
 namespace springproof {
@@ -50,14 +51,19 @@ void print_line(const std::string& mode, const std::string& fem, const std::stri
   to_stdout("\n");
 }
 
+/// Of a model's frequency from the reference's; none of a mode without a partner.
+std::optional<double> error_of(const FrequencyTable& t, const ModelFrequencies& m, std::size_t i) {
+  const std::optional<double>& frequency = m.rows[i].frequency;
+  return frequency ? std::optional(*frequency / t.reference[i].value - 1) : std::nullopt;
+}
+
 ModelCells cells_of(const FrequencyTable& t, const ModelFrequencies& m, std::size_t i) {
   if (i >= t.reference.size())
     return {i < m.modes.frequencies.size() ? fmt::format("{:.5g}", m.modes.frequencies[i]) : "", "", ""};
   const ModeRow& row = m.rows[i];
   const std::string mac = fmt::format("{:.2f}", row.mac);
   if (!row.frequency) return {"no partner", "", mac};
-  return {fmt::format("{:.5g}", *row.frequency),
-          fmt::format("{:+.2f}", 100 * (*row.frequency / t.reference[i].value - 1)), mac};
+  return {fmt::format("{:.5g}", *row.frequency), fmt::format("{:+.2f}", 100 * *error_of(t, m, i)), mac};
 }
 
 void print_modes(const FrequencyTable& t, const std::vector<const ModelFrequencies*>& models, int modes) {
@@ -145,12 +151,10 @@ nlohmann::json json_of(const FrequencyTable& t) {
                             {"largest_error", m.largest},
                             {"pairs", nlohmann::json::array()}};
     for (std::size_t i = 0; i < m.rows.size(); ++i)
-      model["pairs"].push_back(
-          {{"mode", i + 1},
-           {"frequency_Hz", m.rows[i].frequency ? nlohmann::json(*m.rows[i].frequency) : nlohmann::json()},
-           {"error",
-            m.rows[i].frequency ? nlohmann::json(*m.rows[i].frequency / t.reference[i].value - 1) : nlohmann::json()},
-           {"mac", m.rows[i].mac}});
+      model["pairs"].push_back({{"mode", i + 1},
+                                {"frequency_Hz", m.rows[i].frequency},
+                                {"error", error_of(t, m, i)},
+                                {"mac", m.rows[i].mac}});
     out["models"].push_back(model);
   }
   return out;
@@ -223,9 +227,7 @@ void FrequenciesCommand::add_options(CLI::App& command) {
 
 int FrequenciesCommand::run() const try {
   if (vtu_ && out_.empty()) throw InputError("--vtu: needs a folder (allowed: with --out DIR)");
-  const std::vector<fs::path> found = find_cases({case_});
-  if (found.size() > 1) throw InputError(fmt::format("{} is a folder of {} cases; name one", case_, found.size()));
-  const Experiment whole = read_experiment(found.front());
+  const Experiment whole = read_experiment(find_case(case_));
   const Experiment experiment = with_settings(case_of_modes(whole, options_), poisson_ratios_);
   require_one_listed(experiment);
   end_at_interrupts();
