@@ -170,7 +170,7 @@ int cross_check(const std::filesystem::path& file, const CrossCheckOptions& opti
   if (options.poisson_ratio || experiment.listed.materials.size() == 1)
     experiment = at_wanted(experiment, options.poisson_ratio);
   require_one_listed(experiment);
-  if (options.modes == 0) calculix::require_counterpart(experiment);
+  if (options.modes == 0) calculix::counterpart(experiment);
   if (options.modes == 0 && moves_in_time(experiment)) {
     calculix::require_motion_counterpart(experiment);
     if (options.cells[0] > 0)

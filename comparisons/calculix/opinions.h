@@ -54,6 +54,9 @@ struct Opinion {
   double uncertainty = 0;  ///< of these, relative to their norm over time
 };
 
+/// The hexahedra of a case, with its regions and patches.
+Mesh mesh_of_cells(const Experiment& experiment, const std::filesystem::path& geo, const Cells& cells);
+
 /// @param prepared kept by reference
 /// @throws InputError for grids that cannot be halved twice, and for frequencies that cannot be compared
 Question question(const PreparedCase& prepared, const IsotropicMaterial& material, const CrossCheckOptions& options);

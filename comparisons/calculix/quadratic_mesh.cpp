@@ -203,6 +203,33 @@ void add_nodes_of(const QuadraticMesh& mesh, const Side& side, std::vector<int>&
   brick ? visit(hexahedron_edges, 8) : visit(tetrahedron_edges, 4);
 }
 
+struct PlaceInElement {
+  std::size_t element;
+  Vec3 xi;
+};
+
+std::optional<PlaceInElement> place_in_hexahedra(const Mesh& mesh, const Vec3& point) {
+  const std::optional<Location> place = locate(mesh, point);
+  if (!place) return {};
+  // The trilinear shape functions yield the reference coordinates: each is the sum over the corners of one face.
+  Vec3 xi = -Vec3::Ones();
+  for (int corner = 0; corner < 8; ++corner)
+    for (int d = 0; d < 3; ++d) xi[d] += 2 * hexahedron_corners[corner][d] * place->shape[corner];
+  return PlaceInElement{place->cell, xi};
+}
+
+/// Finds the elements of points.
+std::function<std::optional<PlaceInElement>(const Vec3&)> finder(const Mesh& mesh, double reach) {
+  if (!mesh.hexahedra.empty()) return [&mesh](const Vec3& point) { return place_in_hexahedra(mesh, point); };
+  const double size = (mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff()).norm();
+  const auto locator = std::make_shared<TetrahedronLocator>(mesh.nodes, mesh.tetrahedra);
+  return [locator, most = std::max(reach, 1e-9 * size)](const Vec3& point) -> std::optional<PlaceInElement> {
+    const TetrahedronLocator::Place place = (*locator)(point);
+    if (place.outside > most) return {};
+    return PlaceInElement{place.cell, place.weights.tail<3>()};
+  };
+}
+
 }  // namespace
 
 Basis basis(std::size_t nodes, const Vec3& xi) { return nodes == 20 ? hexahedron_basis(xi) : tetrahedron_basis(xi); }
@@ -262,37 +289,6 @@ Eigen::VectorXd nodal_volumes(const QuadraticMesh& mesh) {
   });
   return volumes;
 }
-
-namespace {
-
-struct PlaceInElement {
-  std::size_t element;
-  Vec3 xi;
-};
-
-std::optional<PlaceInElement> place_in_hexahedra(const Mesh& mesh, const Vec3& point) {
-  const std::optional<Location> place = locate(mesh, point);
-  if (!place) return {};
-  // The trilinear shape functions yield the reference coordinates: each is the sum over the corners of one face.
-  Vec3 xi = -Vec3::Ones();
-  for (int corner = 0; corner < 8; ++corner)
-    for (int d = 0; d < 3; ++d) xi[d] += 2 * hexahedron_corners[corner][d] * place->shape[corner];
-  return PlaceInElement{place->cell, xi};
-}
-
-/// Finds the elements of points.
-std::function<std::optional<PlaceInElement>(const Vec3&)> finder(const Mesh& mesh, double reach) {
-  if (!mesh.hexahedra.empty()) return [&mesh](const Vec3& point) { return place_in_hexahedra(mesh, point); };
-  const double size = (mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff()).norm();
-  const auto locator = std::make_shared<TetrahedronLocator>(mesh.nodes, mesh.tetrahedra);
-  return [locator, most = std::max(reach, 1e-9 * size)](const Vec3& point) -> std::optional<PlaceInElement> {
-    const TetrahedronLocator::Place place = (*locator)(point);
-    if (place.outside > most) return {};
-    return PlaceInElement{place.cell, place.weights.tail<3>()};
-  };
-}
-
-}  // namespace
 
 NodalWeights weights_at(const QuadraticMesh& mesh, const Mesh& linear, const NodalVectors& points, double reach) {
   std::vector<Eigen::Triplet<double>> entries;

@@ -97,6 +97,33 @@ void read_blocks(std::istream& in, Eigen::Index nodes, const Into& into) {
   }
 }
 
+void fill_frequencies(const Deck& deck, std::istream& dat, Solution& solution) {
+  solution.frequencies = read_frequencies(dat);
+  solution.ok = static_cast<int>(solution.frequencies.size()) >= deck.task.modes;
+  if (!solution.ok) solution.message = fmt::format("ccx found {} modes", solution.frequencies.size());
+}
+
+/// A released body's first block is its equilibrium, in a step of one second.
+void fill_path(const Deck& deck, std::istream& dat, Solution& solution) {
+  const bool released = deck.experiment.dynamics->released;
+  std::vector<std::pair<double, NodalVectors>> path = read_path(dat, deck.at_probes);
+  if (released)
+    path.erase(path.begin(),
+               std::find_if(path.begin(), path.end(), [](const auto& at) { return at.first > 1 - 1e-6; }));
+  else
+    path.insert(path.begin(), {0, NodalVectors::Zero(deck.at_probes.rows(), 3)});
+  if (static_cast<int>(path.size()) != deck.task.steps + 1) {
+    solution.message = path.empty() ? "ccx printed no equilibrium to start from"
+                                    : fmt::format("ccx made {} steps of {}", path.size() - 1, deck.task.steps);
+    return;
+  }
+  for (int i = 0; i <= deck.task.steps; ++i) {
+    solution.time.push_back(deck.experiment.dynamics->duration * i / deck.task.steps);
+    solution.path.push_back(path[i].second);
+  }
+  solution.ok = true;
+}
+
 }  // namespace
 
 fs::path program() { return program_on_path("ccx"); }
@@ -153,37 +180,6 @@ std::vector<double> read_frequencies(std::istream& in) {
   }
   return frequencies;
 }
-
-namespace {
-
-void fill_frequencies(const Deck& deck, std::istream& dat, Solution& solution) {
-  solution.frequencies = read_frequencies(dat);
-  solution.ok = static_cast<int>(solution.frequencies.size()) >= deck.task.modes;
-  if (!solution.ok) solution.message = fmt::format("ccx found {} modes", solution.frequencies.size());
-}
-
-/// A released body's first block is its equilibrium, in a step of one second.
-void fill_path(const Deck& deck, std::istream& dat, Solution& solution) {
-  const bool released = deck.experiment.dynamics->released;
-  std::vector<std::pair<double, NodalVectors>> path = read_path(dat, deck.at_probes);
-  if (released)
-    path.erase(path.begin(),
-               std::find_if(path.begin(), path.end(), [](const auto& at) { return at.first > 1 - 1e-6; }));
-  else
-    path.insert(path.begin(), {0, NodalVectors::Zero(deck.at_probes.rows(), 3)});
-  if (static_cast<int>(path.size()) != deck.task.steps + 1) {
-    solution.message = path.empty() ? "ccx printed no equilibrium to start from"
-                                    : fmt::format("ccx made {} steps of {}", path.size() - 1, deck.task.steps);
-    return;
-  }
-  for (int i = 0; i <= deck.task.steps; ++i) {
-    solution.time.push_back(deck.experiment.dynamics->duration * i / deck.task.steps);
-    solution.path.push_back(path[i].second);
-  }
-  solution.ok = true;
-}
-
-}  // namespace
 
 Solution solve(const Deck& deck, double time_limit) {
   const fs::path file = program();

@@ -114,9 +114,10 @@ OrderedJson head_of(const SpringsFile& springs, const std::string& format, const
           {"safe_time_step_s", safe_step}};
 }
 
-void add_body(const EngineBody& body, const std::vector<Spring>& springs, EngineDocument& out) {
-  const Network& network = body.springs.model.network;
-  const Eigen::VectorXd mass = masses(network, body.springs.density);
+void add_body(const SpringsFile& body, const std::vector<std::string>& pinned, const std::vector<Spring>& springs,
+              EngineDocument& out) {
+  const Network& network = body.model.network;
+  const Eigen::VectorXd mass = masses(network, body.density);
   out.array("nodes", "position_m", std::vector<double>(network.X.data(), network.X.data() + network.X.size()), 3);
   out.array("nodes", "mass_kg", std::vector<double>(mass.begin(), mass.end()));
   std::vector<std::array<int, 2>> ends;
@@ -136,10 +137,10 @@ void add_body(const EngineBody& body, const std::vector<Spring>& springs, Engine
   out.nodes("surface", "facets", surface_of(network.X, tetrahedra));
   out.nodes("cells", "nodes", network.cells.corners);
   out.head()["cells"]["edge_m"] = network.cells.edge;
-  add_patches("pins", body.pinned, body.springs, out);
+  add_patches("pins", pinned, body, out);
   std::vector<std::string> all;
-  for (const auto& [name, nodes] : body.springs.patches) all.push_back(name);
-  add_patches("patches", all, body.springs, out);
+  for (const auto& [name, nodes] : body.patches) all.push_back(name);
+  add_patches("patches", all, body, out);
 }
 
 /// The smallest step that single precision allows in this body, by gravity.
@@ -149,8 +150,7 @@ double least_step(const SpringsFile& springs) {
 
 }  // namespace
 
-std::string jolt_json(const EngineBody& body) {
-  const SpringsFile& springs = body.springs;
+std::string jolt_json(const SpringsFile& springs, const std::vector<std::string>& pinned) {
   require_springs_alone(springs);
   require_cubes(springs, "Jolt");
   const double safe = springs.derived.at("safe_time_step_s");
@@ -167,12 +167,11 @@ std::string jolt_json(const EngineBody& body) {
                           {"update_position", false},
                           {"make_rotation_identity", true},
                           {"volume_constraints", "none: of tetrahedra, they lock"}};
-  add_body(body, springs.model.network.springs, out);
+  add_body(springs, pinned, springs.model.network.springs, out);
   return out.text();
 }
 
-std::string bullet_json(const EngineBody& body) {
-  const SpringsFile& springs = body.springs;
+std::string bullet_json(const SpringsFile& springs, const std::vector<std::string>& pinned) {
   require_cubes(springs, "Bullet");
   const IsotropicMaterial& m = *springs.material;
   const BulletNeoHooke neo_hooke = bullet_neo_hooke(m);
@@ -189,19 +188,18 @@ std::string bullet_json(const EngineBody& body) {
       {"linear", {{"youngs_modulus_Pa", m.youngs_modulus}, {"poisson_ratio", m.poisson_ratio}}},
       {"damping", {{"neo_hooke", 0}, {"linear_alpha_1_s", 0}, {"linear_beta_s", 0}}},
       {"default_damping", {{"neo_hooke", 0.05}, {"linear_alpha_1_s", 0.01}, {"linear_beta_s", 0.01}}}};
-  add_body(body, {}, out);
+  add_body(springs, pinned, {}, out);
   return out.text();
 }
 
-std::string mujoco_mjcf(const EngineBody& body) {
-  const SpringsFile& springs = body.springs;
+std::string mujoco_mjcf(const SpringsFile& springs, const std::vector<std::string>& pinned) {
   require_cubes(springs, "MuJoCo");
   const Network& network = springs.model.network;
   const IsotropicMaterial& m = *springs.material;
   const double step = 1.0 / 240, edge = network.cells.edge;
   const Eigen::VectorXd mass = masses(network, springs.density);
   std::vector<char> fixed(network.nodes(), 0);
-  for (const std::string& name : body.pinned)
+  for (const std::string& name : pinned)
     for (const int n : springs.patches.at(name)) fixed[n] = 1;
   std::string out = fmt::format(
       "<!-- {}, version 1, of {} (checksum {}): a solid of E = {:g} Pa, nu = {:g}, {:g} kg/m^3 in linear tetrahedra; "
