@@ -9,7 +9,6 @@
 #include <set>
 
 #include "comparisons/report/headline_cases.h"
-#include "comparisons/report/stability_words.h"
 #include "comparisons/report/words.h"
 #include "problem/case_file/external.h"
 

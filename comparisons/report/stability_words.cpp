@@ -1,4 +1,4 @@
-#include "comparisons/report/stability_words.h"
+#include "comparisons/report/headline_cases.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

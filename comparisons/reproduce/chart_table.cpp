@@ -9,8 +9,6 @@
 namespace springproof {
 namespace {
 
-bool is_outline(const Curve& curve) { return curve.style == CurveStyle::shape || curve.style == CurveStyle::shape_fem; }
-
 /// Column name of a curve: letters, digits and underscores.
 std::string column_name(const Chart& chart, const Curve& curve, std::size_t charts) {
   std::string name;
@@ -29,21 +27,15 @@ bool has_spread(const Curve& curve) {
 
 using Column = std::pair<std::string, std::vector<std::optional<double>>>;
 
+/// One column at least.
 std::string columns_csv(const std::vector<Column>& columns) {
-  std::string out;
   std::size_t lines = 0;
-  for (std::size_t c = 0; c < columns.size(); ++c) {
-    if (c > 0) out += ',';
-    out += csv_text(columns[c].first);
-    lines = std::max(lines, columns[c].second.size());
-  }
-  out += '\n';
-  for (std::size_t line = 0; line < lines; ++line) {
-    for (std::size_t c = 0; c < columns.size(); ++c) {
-      if (c > 0) out += ',';
-      if (line < columns[c].second.size()) out += csv_number(columns[c].second[line]);
-    }
-    out += '\n';
+  for (const auto& [name, values] : columns) lines = std::max(lines, values.size());
+  std::string out;
+  for (std::size_t line = 0; line <= lines; ++line) {  // the names, then the values
+    for (const auto& [name, values] : columns)
+      out += (line == 0 ? csv_text(name) : line <= values.size() ? csv_number(values[line - 1]) : "") + ',';
+    out.back() = '\n';
   }
   return out;
 }

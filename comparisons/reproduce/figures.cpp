@@ -61,10 +61,12 @@ std::vector<PaperFigure> figures_named(const Paper& paper, const std::vector<std
 
 std::vector<BodyPlan> body_grid(const std::string& case_name,
                                 const std::vector<std::pair<std::string, std::string>>& models,
-                                const std::vector<double>& poisson_ratios) {
+                                const std::vector<double>& poisson_ratios, bool undeformed) {
   std::vector<BodyPlan> all;
-  for (const auto& [label, model] : models)
+  for (const auto& [label, model] : models) {
+    if (undeformed) all.push_back({"undeformed", case_name, model, poisson_ratios.front(), {}, true});
     for (double nu : poisson_ratios) all.push_back({label, case_name, model, nu});
+  }
   return all;
 }
 

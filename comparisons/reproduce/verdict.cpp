@@ -1,4 +1,4 @@
-#include "comparisons/reproduce/verdict.h"
+#include "comparisons/reproduce/reproduce.h"
 
 #include <fmt/format.h>
 
