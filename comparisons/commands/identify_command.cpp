@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "comparisons/commands/commands.h"
-#include "comparisons/identify/identify.h"
+#include "comparisons/identify/identified.h"
 #include "comparisons/sweep/find_cases.h"
 #include "comparisons/sweep/folder_lock.h"
 #include "comparisons/sweep/status.h"
@@ -83,9 +83,7 @@ void IdentifyCommand::add_options(CLI::App& command) {
 }
 
 int IdentifyCommand::run() const {
-  const std::vector<fs::path> found = find_cases({case_});
-  if (found.size() > 1) throw InputError(fmt::format("{} is a folder of {} cases; name one", case_, found.size()));
-  const Experiment e = read_experiment(found.front());
+  const Experiment e = read_experiment(find_case(case_));
   const std::vector<Identification> wanted = wanted_of(e, only_, start_);
   end_at_interrupts();
   const fs::path runs = fs::path(out_) / "runs";
@@ -96,7 +94,7 @@ int IdentifyCommand::run() const {
   std::vector<Identified> all;
   for (const Identification& sought : wanted) {
     const Status::Working working(status, fmt::format("{}, {}", e.name, sought.name));
-    all.push_back(identify(e, sought, {.folder = runs, .synthetic = synthetic_}));
+    all.push_back(identify(e, sought, runs, synthetic_));
     if (children_interrupted()) return interrupted_status;
     if (!json_) to_stdout("{}", text_of(all.back()));
     std::fflush(stdout);

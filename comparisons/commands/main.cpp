@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "comparisons/commands/commands.h"
-#include "comparisons/commands/versions.h"
 #include "msm/gpu/gpu.h"
 #include "problem/system/streams.h"
 

@@ -42,17 +42,13 @@ void decide(const Expectation& e, bool any_reference, Check& check) {
 }
 
 Check judge_one(const CaseResult& result, const Expectation& e, const RunKey& key) {
-  Check check{key,
-              e.measure,
-              unit_of(e.measure),
-              to_string(e.source),
-              e.at_least ? *e.at_least : e.value.value_or(0),
-              {},
-              0,
-              {},
-              Verdict::no_result,
-              e.where,
-              e.at_least.has_value()};
+  Check check = of_run<Check>(key);
+  check.measure = e.measure;
+  check.unit = unit_of(e.measure);
+  check.source = to_string(e.source);
+  check.expected = e.at_least ? *e.at_least : e.value.value_or(0);
+  check.where = e.where;
+  check.at_least = e.at_least.has_value();
   if (const auto element = reference_element(result.experiment, e.model)) {
     if (const ReferenceRecord* r = find_reference(result, *element, key.poisson_ratio, e.measure)) {
       check.computed = r->value;
