@@ -68,8 +68,8 @@ void recommend(const Advice& a, const Choice& best, const Choice* element, std::
 /// Which of measuring cells and refining them costs less for the wanted error.
 void weigh(const Advice& a, std::vector<std::string>& words) {
   const auto made_by = [&](const char* how) -> const Choice* {
-    const auto at = std::find_if(a.choices.begin(), a.choices.end(),
-                                 [&](const Choice& c) { return c.model.ends_with(how) && c.accurate && c.seconds; });
+    const auto at = std::ranges::find_if(
+        a.choices, [&](const Choice& c) { return c.model.ends_with(how) && c.accurate && c.seconds; });
     return at == a.choices.end() ? nullptr : &*at;
   };
   const Choice *measured = made_by(" coarsened=true"), *refined = made_by(" accuracy");

@@ -24,8 +24,8 @@ std::optional<Prediction> worst(const std::vector<std::optional<Prediction>>& al
 }
 
 const IsotropicMaterial& nearest_to_half(const std::vector<IsotropicMaterial>& materials) {
-  return *std::max_element(materials.begin(), materials.end(),
-                           [](const auto& a, const auto& b) { return a.poisson_ratio < b.poisson_ratio; });
+  return *std::ranges::max_element(materials,
+                                   [](const auto& a, const auto& b) { return a.poisson_ratio < b.poisson_ratio; });
 }
 
 std::string ratios(const std::vector<IsotropicMaterial>& materials) {

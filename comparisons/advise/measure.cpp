@@ -75,7 +75,7 @@ int measure_held_out(const fs::path& file) {
   for (const Experiment& e : held_out_cases())
     for (const IsotropicMaterial& material : e.materials) {
       const std::string name = case_name(e.file), title = fmt::format("{}, nu = {:g}", name, material.poisson_ratio);
-      if (std::any_of(out.begin(), out.end(), [&](const Measurement& m) {
+      if (std::ranges::any_of(out, [&](const Measurement& m) {
             return m.case_name == name && same_poisson_ratio(m.poisson_ratio, material.poisson_ratio);
           }))
         continue;
@@ -108,8 +108,8 @@ std::vector<Experiment> held_out_cases() {
   std::vector<Experiment> cases;
   const auto keep = [](Experiment e, const std::vector<double>& ratios) {
     std::erase_if(e.materials, [&](const IsotropicMaterial& m) {
-      return !ratios.empty() && std::none_of(ratios.begin(), ratios.end(),
-                                             [&](double nu) { return same_poisson_ratio(nu, m.poisson_ratio); });
+      return !ratios.empty() &&
+             std::ranges::none_of(ratios, [&](double nu) { return same_poisson_ratio(nu, m.poisson_ratio); });
     });
     // Only models that advice knows, without options.
     std::erase_if(e.models, [](const ModelChoice& m) { return std::ranges::count(usual_models, m.label) == 0; });
@@ -203,8 +203,7 @@ std::vector<Judged> judge_predictions(const std::vector<Measurement>& held_out, 
         if (m.case_name != case_name(e.file) || !same_poisson_ratio(m.poisson_ratio, material.poisson_ratio)) continue;
         rows.push_back(m);
         const std::string row = m.model.substr(0, m.model.find(' '));
-        if (!row.starts_with("fem_") && std::find(models.begin(), models.end(), row) == models.end())
-          models.push_back(row);
+        if (!row.starts_with("fem_") && std::ranges::find(models, row) == models.end()) models.push_back(row);
       }
       if (rows.empty()) continue;
       const Pilot pilot = solve_pilot(e, material, models, size);

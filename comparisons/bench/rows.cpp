@@ -92,8 +92,7 @@ std::string outcome(const BenchRow& row) {
 }
 
 bool complete(const Findings& findings) {
-  return std::none_of(findings.rows.begin(), findings.rows.end(),
-                      [](const BenchRow& row) { return outcome(row) == "no result"; });
+  return std::ranges::none_of(findings.rows, [](const BenchRow& row) { return outcome(row) == "no result"; });
 }
 
 nlohmann::json to_json(const Findings& findings) {

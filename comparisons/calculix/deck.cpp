@@ -19,7 +19,7 @@ namespace {
 constexpr double largest_turn_per_step = 20 * std::numbers::pi / 180;
 
 const QuadraticPatch& patch_of(const QuadraticMesh& mesh, const std::string& name) {
-  const auto at = std::find_if(mesh.patches.begin(), mesh.patches.end(), [&](const auto& p) { return p.name == name; });
+  const auto at = std::ranges::find_if(mesh.patches, [&](const auto& p) { return p.name == name; });
   if (at != mesh.patches.end()) return *at;
   std::vector<std::string> names;
   for (const QuadraticPatch& p : mesh.patches) names.push_back(p.name);

@@ -145,7 +145,8 @@ std::optional<Opinion> calculix_equilibrium(const Question& q, Status& status) {
   std::vector<Answer> answers;
   Noise noise;
   for (int g = 0; g < 3; ++g) {
-    const calculix::Deck deck = q.deck(g);
+    const calculix::Deck deck =
+        calculix::make_deck(q.experiment(), q.material, *q.meshes[g], {.modes = q.modes, .steps = 0});
     const auto s = solved(q, deck, fmt::format("CalculiX {} {}", deck.element, q.grids[g]), status);
     if (!s) return {};
     answers.push_back(calculix_answer(q, deck, *s));

@@ -39,9 +39,6 @@ struct Question {
     return same_meshes() && modes == 0 && !moves() && experiment().kinematics == "linear" &&
            !calculix::needs_reduced_integration(experiment(), material);
   }
-  calculix::Deck deck(int grid) const {
-    return calculix::make_deck(experiment(), material, *meshes[grid], {.modes = modes, .steps = 0});
-  }
 };
 
 /// Values extrapolated from the three grids.

@@ -167,7 +167,7 @@ std::vector<int> with_middles(const Cell& cell, const Edges& edges, MiddleNodes&
 }
 
 Corners4 sorted(Corners4 nodes) {
-  std::sort(nodes.begin(), nodes.end());
+  std::ranges::sort(nodes);
   return nodes;
 }
 
@@ -193,7 +193,7 @@ void add_nodes_of(const QuadraticMesh& mesh, const Side& side, std::vector<int>&
   const std::vector<int>& element = mesh.elements[side.element];
   const bool brick = element.size() == 20;
   const Corners4& corners = brick ? hexahedron_sides[side.face - 1] : tetrahedron_sides[side.face - 1];
-  const auto on_side = [&](int corner) { return std::find(corners.begin(), corners.end(), corner) != corners.end(); };
+  const auto on_side = [&](int corner) { return std::ranges::find(corners, corner) != corners.end(); };
   const auto visit = [&](const auto& edges, std::size_t first_middle) {
     for (std::size_t i = 0; i < first_middle; ++i)
       if (on_side(int(i))) nodes.push_back(element[i]);
@@ -248,7 +248,7 @@ QuadraticMesh quadratic(const Mesh& mesh) {
       patch.sides.push_back(sides.at(sorted(facet)));
       add_nodes_of(out, patch.sides.back(), patch.nodes);
     }
-    std::sort(patch.nodes.begin(), patch.nodes.end());
+    std::ranges::sort(patch.nodes);
     patch.nodes.erase(std::unique(patch.nodes.begin(), patch.nodes.end()), patch.nodes.end());
     out.patches.push_back(std::move(patch));
   }

@@ -60,8 +60,7 @@ void fill_solution(const Deck& deck, const Printed& printed, Solution& solution)
   field.displacement = printed.displacement.topRows(deck.linear.nodes.rows());
   for (const HeldComponent& h : deck.held) {
     const std::string& name = *patch_of(e.loads[h.load]);
-    auto at =
-        std::find_if(field.reactions.begin(), field.reactions.end(), [&](const auto& r) { return r.patch == name; });
+    auto at = std::ranges::find_if(field.reactions, [&](const auto& r) { return r.patch == name; });
     if (at == field.reactions.end()) at = field.reactions.insert(at, {name, Vec3::Zero(), Vec3::Zero()});
     const Vec3 force = support(h.node, h.component) * Vec3::Unit(h.component);
     const Vec3 arm = arms.row(h.node).transpose() - centroid(deck.linear, patch(deck.linear, name));
@@ -108,8 +107,7 @@ void fill_path(const Deck& deck, std::istream& dat, Solution& solution) {
   const bool released = deck.experiment.dynamics->released;
   std::vector<std::pair<double, NodalVectors>> path = read_path(dat, deck.at_probes);
   if (released)
-    path.erase(path.begin(),
-               std::find_if(path.begin(), path.end(), [](const auto& at) { return at.first > 1 - 1e-6; }));
+    path.erase(path.begin(), std::ranges::find_if(path, [](const auto& at) { return at.first > 1 - 1e-6; }));
   else
     path.insert(path.begin(), {0, NodalVectors::Zero(deck.at_probes.rows(), 3)});
   if (static_cast<int>(path.size()) != deck.task.steps + 1) {

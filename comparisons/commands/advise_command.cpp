@@ -42,7 +42,7 @@ std::vector<double> numbers_of(const std::string& text) {
   if (out.empty() || (range && (out.size() != 2 || out[0] > out[1])))
     throw InputError(fmt::format("--nu: '{}' (allowed: a range is FIRST:LAST, the first the smaller)", text));
   if (range) out.insert(out.begin() + 1, (out[0] + out[1]) / 2);
-  std::sort(out.begin(), out.end());
+  std::ranges::sort(out);
   return out;
 }
 
@@ -54,7 +54,7 @@ std::vector<IsotropicMaterial> ends_of(const Experiment& e, const std::string& w
     all.clear();
     for (const double nu : numbers_of(wanted)) all.push_back({first.youngs_modulus, nu, first.density});
   }
-  std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.poisson_ratio < b.poisson_ratio; });
+  std::ranges::sort(all, [](const auto& a, const auto& b) { return a.poisson_ratio < b.poisson_ratio; });
   if (all.size() > 2) all = {all.front(), all.back()};
   return all;
 }

@@ -36,8 +36,7 @@ std::string name_of(const ModelFrequencies& m) {
 std::string supports_words(const Experiment& e) {
   std::vector<std::string> patches;
   for (const Load& load : supports_of(e))
-    if (const std::string& on = *patch_of(load); std::find(patches.begin(), patches.end(), on) == patches.end())
-      patches.push_back(on);
+    if (const std::string& on = *patch_of(load); std::ranges::find(patches, on) == patches.end()) patches.push_back(on);
   return patches.empty() ? "free" : fmt::format("held on {}", fmt::join(patches, ", "));
 }
 
@@ -251,8 +250,7 @@ int FrequenciesCommand::run() const try {
     for (const FrequencyTable& t : solved) {
       print(experiment, t, options_.modes);
       std::fflush(stdout);
-      all = all && t.failure.empty() &&
-            std::all_of(t.models.begin(), t.models.end(), [](const auto& m) { return m.message.empty(); });
+      all = all && t.failure.empty() && std::ranges::all_of(t.models, [](const auto& m) { return m.message.empty(); });
       if (out_.empty()) continue;
       tables.push_back(json_of(t));
       if (vtu_) write_all_shapes(out_, experiment, t);

@@ -32,12 +32,11 @@ std::vector<Identification> wanted_of(const Experiment& e, const std::vector<std
   std::vector<std::string> names;
   for (const Identification& i : all) names.push_back(i.name);
   for (const std::string& name : only)
-    if (std::find(names.begin(), names.end(), name) == names.end())
+    if (std::ranges::find(names, name) == names.end())
       throw InputError(
           fmt::format("--only: '{}' is no [[identify]] of the case (allowed: {})", name, fmt::join(names, ", ")));
   if (!only.empty())
-    std::erase_if(all,
-                  [&](const Identification& i) { return std::find(only.begin(), only.end(), i.name) == only.end(); });
+    std::erase_if(all, [&](const Identification& i) { return std::ranges::find(only, i.name) == only.end(); });
   for (Identification& i : all)
     for (std::size_t p = 0; !start.empty() && p < i.parameters.size(); ++p) {
       SoughtParameter& sought = i.parameters[p];
@@ -102,7 +101,7 @@ int IdentifyCommand::run() const {
   write_file(fs::path(out_) / "identify.json", json_text(all));
   write_file(fs::path(out_) / "identify.html", identify_page(all));
   if (json_) to_stdout("{}", json_text(all));
-  return std::all_of(all.begin(), all.end(), [](const Identified& i) { return i.ok; }) ? 0 : 1;
+  return std::ranges::all_of(all, [](const Identified& i) { return i.ok; }) ? 0 : 1;
 }
 
 }  // namespace

@@ -173,7 +173,7 @@ class Fitting {
       IdentifiedValue v{.name = D.name,
                         .load_case = e_.load_cases[D.of].name + (D.minus ? " − " + e_.load_cases[*D.minus].name : ""),
                         .unit = unit_of(D.quantity),
-                        .fitted = std::find(s_.fitted.begin(), s_.fitted.end(), m) != s_.fitted.end(),
+                        .fitted = std::ranges::find(s_.fitted, m) != s_.fitted.end(),
                         .measured = D.value,
                         .u_measured = D.u,
                         .u_numerical = u_numerical_[m]};
@@ -222,7 +222,7 @@ class Fitting {
     const double value = numbers_of(s_, found_.fit.parameters)[number], scale = sought.logarithmic ? value : 1;
     IdentifiedParameter p{sought.name,  sought.of,          sought.start,        sought.lower,
                           sought.upper, sought.logarithmic, found_.held[number], value};
-    const auto place = std::find(free_.begin(), free_.end(), static_cast<Index>(number));
+    const auto place = std::ranges::find(free_, static_cast<Index>(number));
     if (place != free_.end()) set_uncertainties(place - free_.begin(), scale, p);
     p.u_data = scale * u;
     p.u = std::hypot(p.u_data, p.u_inputs.value_or(0), p.u_numerical.value_or(0));
@@ -292,8 +292,7 @@ class Fitting {
       by_parameter_.push_back(change(model_.at(numbers_of(s_, moved), 0, all), moved[p] - at[p]));
     }
     for (const OtherInput& input : s_.inputs) {
-      const bool found =
-          std::any_of(input.sought.begin(), input.sought.end(), [&](std::size_t p) { return !found_.held[p]; });
+      const bool found = std::ranges::any_of(input.sought, [&](std::size_t p) { return !found_.held[p]; });
       if (found) continue;
       inputs_.push_back(input.number);
       by_input_.push_back(change(model_.at(numbers_of(s_, at), 0, all, input.number), 1));

@@ -94,7 +94,7 @@ CalibrationShare share_of(const std::string& kind, const std::vector<KnownQuanti
   }
   share.quantities = static_cast<int>(ratios.size());
   if (ratios.empty()) return share;
-  std::sort(ratios.begin(), ratios.end());
+  std::ranges::sort(ratios);
   share.median_ratio = (ratios[(ratios.size() - 1) / 2] + ratios[ratios.size() / 2]) / 2;
   share.largest_ratio = ratios.back();
   return share;
@@ -135,7 +135,7 @@ std::vector<KnownQuantity> known_quantities(const CaseResult& result) {
     const auto same = [&](const auto& x) {
       return x.measure == r.measure && same_poisson_ratio(x.poisson_ratio, r.poisson_ratio);
     };
-    if (std::none_of(records.begin(), records.end(), same)) records.push_back(r);
+    if (std::ranges::none_of(records, same)) records.push_back(r);
   }
   return known_quantities(result.experiment, records);
 }

@@ -46,7 +46,7 @@ struct Weighted {
 };
 
 double percentile(std::vector<Weighted> values) {
-  std::sort(values.begin(), values.end(), [](const Weighted& a, const Weighted& b) { return a.value < b.value; });
+  std::ranges::sort(values, [](const Weighted& a, const Weighted& b) { return a.value < b.value; });
   double whole = 0, sum = 0;
   for (const Weighted& v : values) whole += v.weight;
   for (const Weighted& v : values)

@@ -62,9 +62,9 @@ Check judge_one(const CaseResult& result, const Expectation& e, const RunKey& ke
     }
   }
   check.within = e.relative ? e.within * std::abs(check.expected) : e.within;
-  const bool any_reference =
-      std::any_of(result.references.begin(), result.references.end(),
-                  [&](const ReferenceRecord& r) { return same_poisson_ratio(r.poisson_ratio, key.poisson_ratio); });
+  const bool any_reference = std::ranges::any_of(result.references, [&](const ReferenceRecord& r) {
+    return same_poisson_ratio(r.poisson_ratio, key.poisson_ratio);
+  });
   decide(e, any_reference, check);
   return check;
 }
@@ -72,7 +72,7 @@ Check judge_one(const CaseResult& result, const Expectation& e, const RunKey& ke
 /// Displacements of another program are of one Poisson's ratio, and compared at one resolution.
 bool left_out(const CaseResult& result, const RunKey& key) {
   const auto runs_there = [&](bool here) {
-    return std::any_of(result.runs.begin(), result.runs.end(), [&](const Run& run) {
+    return std::ranges::any_of(result.runs, [&](const Run& run) {
       return run.kind == "external" && run.model == key.model && (!here || same_run(run, key));
     });
   };

@@ -34,8 +34,7 @@ struct Candidate {
 
 /// Whether the models are judged by cases of large deformation: where there are no linear ones.
 bool judged_by_large(const std::map<ModelKey, ModelErrors>& models) {
-  return std::all_of(models.begin(), models.end(),
-                     [](const auto& m) { return m.first.large_deformation || m.first.beside; });
+  return std::ranges::all_of(models, [](const auto& m) { return m.first.large_deformation || m.first.beside; });
 }
 
 /// The spring models that were compared most widely, the closest first.
@@ -46,8 +45,7 @@ std::vector<Candidate> candidates(const std::map<ModelKey, ModelErrors>& models)
     if (Candidate c{key.name, large, &errors, ranked(errors, errors.rank)};
         key.large_deformation == large && !key.beside && !c.rank.empty())
       all.push_back(c);
-  std::stable_sort(all.begin(), all.end(),
-                   [](const auto& a, const auto& b) { return ranks_before(*a.errors, *b.errors); });
+  std::ranges::stable_sort(all, [](const auto& a, const auto& b) { return ranks_before(*a.errors, *b.errors); });
   if (!all.empty())
     std::erase_if(all,
                   [widest = breadth(*all.front().errors)](const Candidate& c) { return breadth(*c.errors) < widest; });
@@ -144,8 +142,8 @@ std::string range_text(double from, double to) {
 std::string range_text(const ByNu& errors) { return range_text(errors.begin()->first, errors.rbegin()->first); }
 
 const std::pair<const double, Worst>& largest(const ByNu& errors) {
-  return *std::max_element(errors.begin(), errors.end(),
-                           [](const auto& a, const auto& b) { return a.second.error < b.second.error; });
+  return *std::ranges::max_element(errors,
+                                   [](const auto& a, const auto& b) { return a.second.error < b.second.error; });
 }
 
 ByNu claimed(const ModelErrors& errors, const ByNu& by_nu) {
@@ -189,7 +187,7 @@ std::string closest_at_rest(const std::map<ModelKey, ModelErrors>& models, std::
     closest.push_back(c.name);
     uncertainty = std::max(uncertainty, doubt);
   }
-  const auto spring_models = std::count_if(models.begin(), models.end(), [&](const auto& m) {
+  const auto spring_models = std::ranges::count_if(models, [&](const auto& m) {
     return !m.first.beside && m.first.large_deformation == best.large_deformation &&
            !ranked(m.second, m.second.rank).empty();
   });
@@ -207,8 +205,7 @@ std::string closest_in_time(const std::map<std::string, ByNu>& models, std::vect
   for (const auto& [model, errors] : models)
     if (errors.size() == widest) all.emplace_back(model, largest(errors).second);
   if (all.empty()) return "";
-  std::stable_sort(all.begin(), all.end(),
-                   [](const auto& a, const auto& b) { return a.second.error < b.second.error; });
+  std::ranges::stable_sort(all, [](const auto& a, const auto& b) { return a.second.error < b.second.error; });
   const Worst& least = all.front().second;
   std::vector<std::string> names;
   const bool unnamed = closest.empty();

@@ -84,7 +84,7 @@ std::string facets_svg(const BodyPanel& panel, const Projection& to, double scal
     visible.emplace_back(middle.dot(to.toward), fmt::format("<polygon points=\"{}\" fill=\"{}\"/>\n", points,
                                                             hex(colour, 0.68 + 0.32 * std::abs(facing))));
   }
-  std::stable_sort(visible.begin(), visible.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::ranges::stable_sort(visible, [](const auto& a, const auto& b) { return a.first < b.first; });
   std::string out = "<g stroke=\"#1d2430\" stroke-width=\"0.3\" stroke-linejoin=\"round\">\n";
   for (const auto& [depth, svg] : visible) out += svg;
   return out + "</g>\n";
@@ -163,7 +163,7 @@ std::vector<Vec3> layer_outline(const Shape& shape, int normal, const Vec3& poin
   for (std::size_t i = 0; i < shape.rest.size(); ++i)
     if (std::abs(shape.rest[i][normal] - point[normal]) < tolerance)
       around.emplace_back(std::atan2(shape.rest[i][b] - middle[b], shape.rest[i][a] - middle[a]), shape.displaced[i]);
-  std::stable_sort(around.begin(), around.end(), [](const auto& p, const auto& q) { return p.first < q.first; });
+  std::ranges::stable_sort(around, [](const auto& p, const auto& q) { return p.first < q.first; });
   std::vector<Vec3> outline;
   for (const auto& [angle, place] : around) outline.push_back(place);
   return outline;

@@ -186,9 +186,8 @@ Paint paint_of(const std::vector<Chart>& charts, const Curve& curve) {
   std::vector<std::string> known;
   for (const Chart& chart : charts)
     for (const Curve& c : chart.curves)
-      if (look_of(c.style).ours && std::find(known.begin(), known.end(), c.label) == known.end())
-        known.push_back(c.label);
-  const auto number = std::find(known.begin(), known.end(), curve.label) - known.begin();
+      if (look_of(c.style).ours && std::ranges::find(known, c.label) == known.end()) known.push_back(c.label);
+  const auto number = std::ranges::find(known, curve.label) - known.begin();
   const std::string colour = curve_colours[static_cast<std::size_t>(number) % curve_colours.size()];
   const Look look = look_of(curve.style);
   return {colour, fmt::format(fmt::runtime(look.line), colour), fmt::format(fmt::runtime(look.marker), colour),

@@ -21,8 +21,7 @@ std::string column_name(const Chart& chart, const Curve& curve, std::size_t char
 }
 
 bool has_spread(const Curve& curve) {
-  return std::any_of(curve.points.begin(), curve.points.end(),
-                     [](const CurvePoint& p) { return p.spread.has_value(); });
+  return std::ranges::any_of(curve.points, [](const CurvePoint& p) { return p.spread.has_value(); });
 }
 
 using Column = std::pair<std::string, std::vector<std::optional<double>>>;
@@ -52,8 +51,7 @@ std::vector<Column> shared_columns(const std::vector<Chart>& charts) {
       const std::string name = column_name(chart, curve, charts.size());
       Column y = {name, {}}, spread = {name + "_spread", {}};
       for (double x : places) {
-        const auto found =
-            std::find_if(curve.points.begin(), curve.points.end(), [&](const CurvePoint& p) { return p.x == x; });
+        const auto found = std::ranges::find_if(curve.points, [&](const CurvePoint& p) { return p.x == x; });
         const bool here = found != curve.points.end();
         y.second.push_back(here ? std::optional(found->y) : std::nullopt);
         spread.second.push_back(here ? found->spread : std::nullopt);
@@ -83,9 +81,8 @@ std::vector<Column> separate_columns(const std::vector<Chart>& charts) {
 }  // namespace
 
 std::string charts_csv(const std::vector<Chart>& charts) {
-  const bool outlines = std::any_of(charts.begin(), charts.end(), [](const Chart& chart) {
-    return std::any_of(chart.curves.begin(), chart.curves.end(), is_outline);
-  });
+  const bool outlines =
+      std::ranges::any_of(charts, [](const Chart& chart) { return std::ranges::any_of(chart.curves, is_outline); });
   return columns_csv(outlines ? separate_columns(charts) : shared_columns(charts));
 }
 

@@ -51,11 +51,11 @@ std::vector<PaperFigure> figures_named(const Paper& paper, const std::vector<std
   std::vector<std::string> known;
   for (const PaperFigure& figure : paper.figures) known.push_back(figure.id);
   for (const std::string& id : ids)
-    if (std::find(known.begin(), known.end(), id) == known.end())
+    if (std::ranges::find(known, id) == known.end())
       throw InputError(fmt::format("--figure: {} has no \"{}\" (allowed: {})", paper.name, id, fmt::join(known, ", ")));
   std::vector<PaperFigure> wanted;
   for (const PaperFigure& figure : paper.figures)
-    if (std::find(ids.begin(), ids.end(), figure.id) != ids.end()) wanted.push_back(figure);
+    if (std::ranges::find(ids, figure.id) != ids.end()) wanted.push_back(figure);
   return wanted;
 }
 

@@ -43,8 +43,7 @@ void add_moduli(const PaperResults& results, const std::string& case_name, const
     if (S && E) measured.points.push_back({S->value, E->value / calibrated * value});
   }
   for (Curve* curve : {&estimate, &measured})
-    std::stable_sort(curve->points.begin(), curve->points.end(),
-                     [](const CurvePoint& a, const CurvePoint& b) { return a.x < b.x; });
+    std::ranges::stable_sort(curve->points, [](const CurvePoint& a, const CurvePoint& b) { return a.x < b.x; });
   chart.curves.push_back(std::move(estimate));
   chart.curves.push_back(std::move(measured));
 }

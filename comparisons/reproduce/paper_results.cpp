@@ -208,7 +208,7 @@ std::vector<PrintedValue> PaperResults::printed(const std::string& case_name, co
         v.where.size() > where.size() && std::isdigit(static_cast<unsigned char>(v.where[where.size()]));
     if (v.where.starts_with(where) && !longer) all.push_back(v);
   }
-  std::stable_sort(all.begin(), all.end(), [](const PrintedValue& a, const PrintedValue& b) {
+  std::ranges::stable_sort(all, [](const PrintedValue& a, const PrintedValue& b) {
     return std::pair(a.poisson_ratio, cell_count(a.cells)) < std::pair(b.poisson_ratio, cell_count(b.cells));
   });
   return all;

@@ -128,8 +128,7 @@ std::string groups_of(const SpringsFile& springs) {
   std::string out;
   std::size_t count = 0;
   for (const auto& [name, nodes] : springs.patches) {
-    const bool plain =
-        std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) || c == '_'; });
+    const bool plain = std::ranges::all_of(name, [](unsigned char c) { return std::isalnum(c) || c == '_'; });
     if (!plain || nodes.empty() || ++count > most_groups) continue;
     out += "group " + name + " id";
     for (const int n : nodes) out += fmt::format(" {}", n + 1);

@@ -39,7 +39,7 @@ std::vector<std::string> held_patches(const Experiment& experiment) {
     if (!prescribes_displacement(load)) continue;
     const PrescribedValue u = prescribed_displacement(load, Vec3::Zero(), Kinematics::linear, 1);
     const std::string& patch = *patch_of(load);
-    if (u[0] && u[1] && u[2] && std::find(held.begin(), held.end(), patch) == held.end()) held.push_back(patch);
+    if (u[0] && u[1] && u[2] && std::ranges::find(held, patch) == held.end()) held.push_back(patch);
   }
   return held;
 }

@@ -25,12 +25,12 @@ namespace {
 ModelChoice chosen_model(const Experiment& e, const std::string& name) {
   std::vector<std::string> known;
   for (const ModelChoice& m : e.models) known.push_back(m.label);
-  const auto at = std::find(known.begin(), known.end(), name);
+  const auto at = std::ranges::find(known, name);
   if (at != known.end()) return e.models[static_cast<std::size_t>(at - known.begin())];
   if (name.empty() && !e.models.empty()) return e.models.front();
   for (const ModelRow& row : model_table()) {
     if (row.name == name) return named_model(name);
-    if (std::find(known.begin(), known.end(), row.name) == known.end()) known.push_back(row.name);
+    if (std::ranges::find(known, row.name) == known.end()) known.push_back(row.name);
   }
   throw InputError(fmt::format("--model: unknown model '{}' (allowed: {}){}", name, fmt::join(known, ", "),
                                did_you_mean(name, known)));
@@ -103,7 +103,7 @@ Mesh carried_vertices(const ExportRequest& request, const PreparedCase& prepared
 
 bool is_body(const std::string& name) {
   const auto& endings = body_file_endings();
-  return std::find(endings.begin(), endings.end(), extension_of(name)) != endings.end();
+  return std::ranges::find(endings, extension_of(name)) != endings.end();
 }
 
 Experiment read_case(const ExportRequest& request) {
