@@ -28,7 +28,7 @@ foreach(instruction_set portable avx2 avx512)
   endif()
 endforeach()
 if(TARGET msm_avx2)
-  target_compile_definitions(bench PUBLIC SPRINGPROOF_X86_BENCH_KERNELS)
+  target_compile_definitions(bench PRIVATE SPRINGPROOF_X86_BENCH_KERNELS)
 endif()
 
 if(TARGET msm_parallel)

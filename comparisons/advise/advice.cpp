@@ -30,7 +30,7 @@ Budget budget_of(const Choice& c, const Wish& wish) {
 /// The Poisson's ratio of the only solid that a model is, if another one is wanted.
 std::optional<double> other_ratio(const Forecast& f, const std::string& label) {
   const auto own = is_element(label) ? std::nullopt : own_poisson_ratio(resolve({row_of(label), {}, label, {}}).row);
-  const bool fits = own && std::all_of(f.materials.begin(), f.materials.end(), [&](const IsotropicMaterial& m) {
+  const bool fits = own && std::ranges::all_of(f.materials, [&](const IsotropicMaterial& m) {
                       return same_poisson_ratio(m.poisson_ratio, *own);
                     });
   return fits ? std::nullopt : own;
@@ -99,7 +99,7 @@ std::vector<Choice> all_of(const Forecast& f, const std::string& model, const Wi
 /// The coarsest lattice that is accurate; else the coarsest of the most accurate that are not over the budget, else the
 /// coarsest.
 std::optional<Choice> choose(const std::vector<Choice>& all) {
-  const auto reached = std::find_if(all.begin(), all.end(), [](const Choice& c) { return c.accurate; });
+  const auto reached = std::ranges::find_if(all, [](const Choice& c) { return c.accurate; });
   if (reached != all.end() && reached->budget != Budget::over) return *reached;
   std::optional<Choice> best;
   for (const Choice& c : all)
@@ -163,17 +163,17 @@ Advice advise(const Forecast& forecast, const Wish& wish) {
   Advice out;
   out.forecast = forecast;
   out.wish = wish;
-  out.machine = this_machine();
+  const std::string processor = processor_name();
+  out.machine = (processor.empty() ? "this machine" : processor) + ", one core";
   Costs costs(out.forecast);
   for (const std::string& model : forecast.models) {
-    if (!wish.models.empty() && std::find(wish.models.begin(), wish.models.end(), row_of(model)) == wish.models.end())
-      continue;
+    if (!wish.models.empty() && std::ranges::find(wish.models, row_of(model)) == wish.models.end()) continue;
     const auto c = wish.cells_across ? choose_at(out.forecast, model, wish, costs)
                                      : choose(all_of(out.forecast, model, wish, costs));
     if (c) out.choices.push_back(*c);
   }
-  std::stable_sort(out.choices.begin(), out.choices.end(),
-                   [&](const Choice& a, const Choice& b) { return rank_of(a, wish) < rank_of(b, wish); });
+  std::ranges::stable_sort(out.choices,
+                           [&](const Choice& a, const Choice& b) { return rank_of(a, wish) < rank_of(b, wish); });
   if (!out.choices.empty() && !wish.cells_across)
     out.safer = safer_than(out.choices.front(), out.forecast, wish, costs);
   out.elements = choose_elements(out.forecast, wish, costs);

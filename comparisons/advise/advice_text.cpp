@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "comparisons/advise/advice.h"
+#include "problem/system/json.h"
 
 namespace springproof {
 namespace {
@@ -67,8 +68,8 @@ void recommend(const Advice& a, const Choice& best, const Choice* element, std::
 /// Which of measuring cells and refining them costs less for the wanted error.
 void weigh(const Advice& a, std::vector<std::string>& words) {
   const auto made_by = [&](const char* how) -> const Choice* {
-    const auto at = std::find_if(a.choices.begin(), a.choices.end(),
-                                 [&](const Choice& c) { return c.model.ends_with(how) && c.accurate && c.seconds; });
+    const auto at = std::ranges::find_if(
+        a.choices, [&](const Choice& c) { return c.model.ends_with(how) && c.accurate && c.seconds; });
     return at == a.choices.end() ? nullptr : &*at;
   };
   const Choice *measured = made_by(" coarsened=true"), *refined = made_by(" accuracy");
@@ -130,33 +131,26 @@ std::string line(const Choice& c, const Wish& wish) {
                      verdict(c, wish), c.prediction.beyond ? ", extrapolated" : "");
 }
 
-Json number(const std::optional<double>& x) { return x ? Json(*x) : Json(); }
-
-Json json_of(const Choice& c) {
-  return {{"model", c.model},
-          {"cells", std::lround(c.resolution.cells)},
-          {"cells_across", c.resolution.across > 0 ? Json(c.resolution.across) : Json()},
-          {"edge_m", c.resolution.edge},
-          {"error", c.prediction.error},
-          {"error_factor", c.prediction.factor},
-          {"extrapolated", c.prediction.beyond},
-          {"ms_per_step", number(c.ms_per_step)},
-          {"safe_step_s", c.ms_per_step ? Json(c.safe_step) : Json()},
-          {"seconds_per_solve", number(c.seconds)},
-          {"memory_MiB", number(c.MiB)},
-          {"not_measured", c.unmeasured},
-          {"own_poisson_ratio", number(c.own_ratio)},
-          {"reaches", c.accurate && !c.own_ratio},
-          {"within_budget", c.budget == Budget::unknown ? Json() : Json(c.budget == Budget::within)}};
-}
-
-Json json_of(const std::vector<Choice>& choices) {
-  Json all = Json::array();
-  for (const Choice& c : choices) all.push_back(json_of(c));
-  return all;
-}
-
 }  // namespace
+
+static void to_json(Json& j, const Choice& c) {
+  const auto if_there = [](bool there, double x) { return there ? std::optional(x) : std::nullopt; };
+  j = {{"model", c.model},
+       {"cells", std::lround(c.resolution.cells)},
+       {"cells_across", if_there(c.resolution.across > 0, c.resolution.across)},
+       {"edge_m", c.resolution.edge},
+       {"error", c.prediction.error},
+       {"error_factor", c.prediction.factor},
+       {"extrapolated", c.prediction.beyond},
+       {"ms_per_step", c.ms_per_step},
+       {"safe_step_s", if_there(c.ms_per_step.has_value(), c.safe_step)},
+       {"seconds_per_solve", c.seconds},
+       {"memory_MiB", c.MiB},
+       {"not_measured", c.unmeasured},
+       {"own_poisson_ratio", c.own_ratio},
+       {"reaches", c.accurate && !c.own_ratio},
+       {"within_budget", c.budget == Budget::unknown ? Json() : Json(c.budget == Budget::within)}};
+}
 
 std::vector<std::string> words_of(const Advice& a) {
   std::vector<std::string> words;
@@ -194,12 +188,12 @@ Json json_of(const Advice& a) {
       {"machine", a.machine},
       {"wanted",
        {{"error", a.wish.error},
-        {"ms_per_step", number(a.wish.ms_per_step)},
-        {"seconds_per_solve", number(a.wish.seconds)},
-        {"memory_MiB", number(a.wish.MiB)}}},
-      {"models", json_of(a.choices)},
-      {"safer", a.safer ? json_of(*a.safer) : Json()},
-      {"finite_elements", json_of(a.elements)},
+        {"ms_per_step", a.wish.ms_per_step},
+        {"seconds_per_solve", a.wish.seconds},
+        {"memory_MiB", a.wish.MiB}}},
+      {"models", a.choices},
+      {"safer", a.safer},
+      {"finite_elements", a.elements},
       {"words", a.words},
       {"notes", a.forecast.notes},
       {"strain_energy",

@@ -24,8 +24,8 @@ std::optional<Prediction> worst(const std::vector<std::optional<Prediction>>& al
 }
 
 const IsotropicMaterial& nearest_to_half(const std::vector<IsotropicMaterial>& materials) {
-  return *std::max_element(materials.begin(), materials.end(),
-                           [](const auto& a, const auto& b) { return a.poisson_ratio < b.poisson_ratio; });
+  return *std::ranges::max_element(materials,
+                                   [](const auto& a, const auto& b) { return a.poisson_ratio < b.poisson_ratio; });
 }
 
 std::string ratios(const std::vector<IsotropicMaterial>& materials) {
@@ -80,10 +80,8 @@ std::vector<std::string> notes_of(const Pilot& pilot) {
 
 /// Of a model or an element; nothing where it has no result.
 std::optional<Prediction> prediction_of(const Pilot& pilot, const std::string& label, double cells) {
-  for (const auto* list : {&pilot.models, &pilot.elements})
-    for (const PilotModel& m : *list)
-      if (m.label == label && !m.cells.empty() && cells <= m.most_cells) return predict(pilot, m, cells);
-  return {};
+  const PilotModel* m = pilot.find(label);
+  return m && !m->cells.empty() && cells <= m->most_cells ? std::optional(predict(pilot, *m, cells)) : std::nullopt;
 }
 
 }  // namespace

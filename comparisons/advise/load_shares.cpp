@@ -1,4 +1,4 @@
-#include "comparisons/advise/load_shares.h"
+#include "comparisons/advise/pilot.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -118,7 +118,7 @@ LoadShares load_shares(const Mesh& mesh, const NodalVectors& u, const IsotropicM
   for (const Hexahedron& cell : mesh.hexahedra) cells.push_back(strain_of(mesh, cell, u));
   const Vec3 span = (mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff()).transpose();
   std::array<int, 3> axes = {0, 1, 2};
-  std::sort(axes.begin(), axes.end(), [&](int a, int b) { return span[a] < span[b]; });
+  std::ranges::sort(axes, [&](int a, int b) { return span[a] < span[b]; });
   LoadShares best = shares_about(mesh, cells, material, axes[0]);
   for (const int axis : {axes[1], axes[2]})
     if (const LoadShares s = shares_about(mesh, cells, material, axis); s.local < best.local - clearly) best = s;

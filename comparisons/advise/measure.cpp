@@ -23,20 +23,20 @@ namespace fs = std::filesystem;
 constexpr double most_unknowns = 30000;  // of models and elements
 
 /// The rows of a case at one of its materials.
-void add_rows(Experiment e, const IsotropicMaterial& material, MeasuredFile& out) {
+void add_rows(Experiment e, const IsotropicMaterial& material, std::vector<Measurement>& out) {
   const std::string name = case_name(e.file);
   e.materials = {material};
   const Part part = run_part(prepare(e), 0, {});
   for (const Row& row : part.rows)
     if (row.measure == "displacement_error" && row.reference_uncertainty && !row.model.ends_with(extrapolated_suffix))
-      out.rows.push_back({name, row.poisson_ratio, row.model.substr(0, row.model.find(" seeds=")),
-                          cell_count(row.cells), row.value, *row.reference_uncertainty});
+      out.push_back({name, row.poisson_ratio, row.model.substr(0, row.model.find(" seeds=")), cell_count(row.cells),
+                     row.value, *row.reference_uncertainty});
 }
 
 constexpr const char* header =
-    R"( Displacement errors in cases that were not used to make the predictions, by which these are judged (springproof advise --check).
- Made by:  springproof advise --measure-held-out FILE
- error, uncertainty: as parts of the displacement.
+    R"(# Displacement errors in cases that were not used to make the predictions, by which these are judged (springproof advise --check).
+# Made by:  springproof advise --measure-held-out FILE
+# error, uncertainty: as parts of the displacement.
 )";
 
 constexpr const char* heading = "case,nu,model,cells,error,uncertainty";
@@ -65,54 +65,28 @@ bool within(double truth, double predicted, double factor) {
   return truth > 0 && predicted > 0 && std::abs(std::log(predicted / truth)) <= std::log(factor);
 }
 
-const PilotModel* find_model(const Pilot& pilot, const std::string& label) {
-  for (const auto* list : {&pilot.models, &pilot.elements})
-    for (const PilotModel& m : *list)
-      if (m.label == label) return &m;
-  return nullptr;
-}
-
-/// The rows of a case at a Poisson's ratio, and the rows of the model table that they are of.
-struct HeldOut {
-  std::vector<Measurement> rows;
-  std::vector<std::string> models;
-};
-
-HeldOut held_out_of(const std::vector<Measurement>& all, const std::string& name, double poisson_ratio) {
-  HeldOut out;
-  for (const Measurement& m : all) {
-    if (m.case_name != name || !same_poisson_ratio(m.poisson_ratio, poisson_ratio)) continue;
-    out.rows.push_back(m);
-    const std::string row = m.model.substr(0, m.model.find(' '));
-    if (!row.starts_with("fem_") && std::find(out.models.begin(), out.models.end(), row) == out.models.end())
-      out.models.push_back(row);
-  }
-  return out;
-}
-
 }  // namespace
 
 int measure_held_out(const fs::path& file) {
-  MeasuredFile out;
+  std::vector<Measurement> out;
   if (fs::exists(file)) out = read_measurements(file);
-  out.header = header;
   end_at_interrupts();
   Status status;
   for (const Experiment& e : held_out_cases())
     for (const IsotropicMaterial& material : e.materials) {
       const std::string name = case_name(e.file), title = fmt::format("{}, nu = {:g}", name, material.poisson_ratio);
-      if (std::any_of(out.rows.begin(), out.rows.end(), [&](const Measurement& m) {
+      if (std::ranges::any_of(out, [&](const Measurement& m) {
             return m.case_name == name && same_poisson_ratio(m.poisson_ratio, material.poisson_ratio);
           }))
         continue;
-      const std::size_t before = out.rows.size();
+      const std::size_t before = out.size();
       {
         const Status::Working working(status, title);
         add_rows(e, material, out);
       }
       if (children_interrupted()) return interrupted_status;
       write_measurements(file, out);
-      status.print(fmt::format("{}: {} errors", title, out.rows.size() - before));
+      status.print(fmt::format("{}: {} errors", title, out.size() - before));
     }
   return 0;
 }
@@ -134,13 +108,11 @@ std::vector<Experiment> held_out_cases() {
   std::vector<Experiment> cases;
   const auto keep = [](Experiment e, const std::vector<double>& ratios) {
     std::erase_if(e.materials, [&](const IsotropicMaterial& m) {
-      return !ratios.empty() && std::none_of(ratios.begin(), ratios.end(),
-                                             [&](double nu) { return same_poisson_ratio(nu, m.poisson_ratio); });
+      return !ratios.empty() &&
+             std::ranges::none_of(ratios, [&](double nu) { return same_poisson_ratio(nu, m.poisson_ratio); });
     });
     // Only models that advice knows, without options.
-    static const std::vector<std::string> known = {"hybmss_avg", "hybmss_bt", "hybmss", "emsm", "msm_18", "emsm_patch"};
-    std::erase_if(e.models,
-                  [&](const ModelChoice& m) { return std::find(known.begin(), known.end(), m.label) == known.end(); });
+    std::erase_if(e.models, [](const ModelChoice& m) { return std::ranges::count(usual_models, m.label) == 0; });
     e.measures = {"displacement_error"};
     e.elements = {"q1", "q2"};  // of bodies of voxels none: they would be on the staircase
     if (e.body.is_voxels()) e.elements.clear();
@@ -153,26 +125,25 @@ std::vector<Experiment> held_out_cases() {
   };
   for (const fs::path& file : find_cases({(advise_folder() / "held_out").string()}))
     cases.push_back(keep(read_experiment(file), {}));
-  for (const Chosen& c : chosen) cases.push_back(keep(read_experiment(find_cases({c.name}).front()), c.poisson_ratios));
+  for (const Chosen& c : chosen) cases.push_back(keep(read_experiment(find_case(c.name)), c.poisson_ratios));
   return cases;
 }
 
-MeasuredFile parse_measurements(const std::string& text, const std::filesystem::path& file) {
-  MeasuredFile out;
+std::vector<Measurement> parse_measurements(const std::string& text, const std::filesystem::path& file) {
+  std::vector<Measurement> out;
   std::istringstream in(text);
   int number = 0;
   bool has_heading = false;
   for (std::string line; std::getline(in, line);) {
     ++number;
-    if (line.starts_with('#')) {
-      out.header += line.substr(1) + "\n";
-    } else if (!has_heading) {
+    if (line.starts_with('#')) continue;
+    if (!has_heading) {
       if (line != heading)
         throw InputError({file.string(), number, 1}, fmt::format("the heading is '{}' (allowed: '{}')", line, heading));
       has_heading = true;
     } else if (!line.empty()) {
       try {
-        out.rows.push_back(measurement_of(line));
+        out.push_back(measurement_of(line));
       } catch (const std::exception& e) {
         throw InputError({file.string(), number, 1},
                          fmt::format("'{}': {} (allowed: text or numbers under '{}')", line, e.what(), heading));
@@ -185,16 +156,13 @@ MeasuredFile parse_measurements(const std::string& text, const std::filesystem::
   return out;
 }
 
-MeasuredFile read_measurements(const std::filesystem::path& file) {
+std::vector<Measurement> read_measurements(const std::filesystem::path& file) {
   return parse_measurements(read_named_file(file, "a table that springproof advise --measure wrote"), file);
 }
 
-void write_measurements(const std::filesystem::path& file, const MeasuredFile& measured) {
-  std::string text;
-  std::istringstream header(measured.header);
-  for (std::string line; std::getline(header, line);) text += "#" + line + "\n";
-  text += fmt::format("{}\n", heading);
-  for (const Measurement& m : measured.rows)
+void write_measurements(const std::filesystem::path& file, const std::vector<Measurement>& measured) {
+  std::string text = fmt::format("{}{}\n", header, heading);
+  for (const Measurement& m : measured)
     text += fmt::format("{},{:g},{},{:.0f},{:.4e},{:.2e}\n", m.case_name, m.poisson_ratio, m.model, m.cells, m.error,
                         m.uncertainty);
   write_named_file(file, text);
@@ -229,13 +197,20 @@ std::vector<Judged> judge_predictions(const std::vector<Measurement>& held_out, 
   for (const Experiment& e : held_out_cases()) {
     if (case_name(e.file).find(name) == std::string::npos) continue;
     for (const IsotropicMaterial& material : e.materials) {
-      const HeldOut of = held_out_of(held_out, case_name(e.file), material.poisson_ratio);
-      if (of.rows.empty()) continue;
-      const Pilot pilot = solve_pilot(e, material, of.models, size);
-      for (const Measurement& m : of.rows) {
+      std::vector<Measurement> rows;
+      std::vector<std::string> models;  // rows of the model table that these are of
+      for (const Measurement& m : held_out) {
+        if (m.case_name != case_name(e.file) || !same_poisson_ratio(m.poisson_ratio, material.poisson_ratio)) continue;
+        rows.push_back(m);
+        const std::string row = m.model.substr(0, m.model.find(' '));
+        if (!row.starts_with("fem_") && std::ranges::find(models, row) == models.end()) models.push_back(row);
+      }
+      if (rows.empty()) continue;
+      const Pilot pilot = solve_pilot(e, material, models, size);
+      for (const Measurement& m : rows) {
         const bool whole = e.body.is_voxels() && !e.body.cut;
-        const PilotModel* model = whole ? find_model(pilot, m.model + " cut=false") : nullptr;
-        if (!model) model = find_model(pilot, m.model);
+        const PilotModel* model = whole ? pilot.find(m.model + " cut=false") : nullptr;
+        if (!model) model = pilot.find(m.model);
         if (model) out.push_back({m, predict(pilot, *model, m.cells)});
       }
     }

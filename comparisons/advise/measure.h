@@ -29,20 +29,14 @@ struct Measurement {
   double uncertainty = 0;    ///< of the reference, as a part of that error
 };
 
-/// A file of measurements.
-struct MeasuredFile {
-  std::string header;  ///< its lines of comment, without '#'
-  std::vector<Measurement> rows;
-};
-
 /// Reads lines of comment (#), a heading and rows.
 /// @throws InputError naming file and line.
-MeasuredFile read_measurements(const std::filesystem::path& file);
+std::vector<Measurement> read_measurements(const std::filesystem::path& file);
 
 /// As read_measurements, from text; `file` is for messages.
-MeasuredFile parse_measurements(const std::string& text, const std::filesystem::path& file);
+std::vector<Measurement> parse_measurements(const std::string& text, const std::filesystem::path& file);
 
-void write_measurements(const std::filesystem::path& file, const MeasuredFile& measured);
+void write_measurements(const std::filesystem::path& file, const std::vector<Measurement>& measured);
 
 /// comparisons/advise beside the sources, or where it is installed.
 std::filesystem::path advise_folder();

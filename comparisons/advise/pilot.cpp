@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <set>
 
 #include "comparisons/judge/deformation.h"
 #include "comparisons/judge/measures.h"
@@ -28,7 +29,6 @@
 namespace springproof {
 namespace {
 
-constexpr double slowest = 0.5, fastest = 2;       // orders at which errors may fall
 constexpr double large_displacement_share = 0.15;  // of the cells, where each is solved by Newton's method
 constexpr double voxel_share = 0.6;                // of the cells of a cut body, whose solver takes more iterations
 constexpr double quadratic_share = 0.75;           // of the models' cells along an edge, for quadratic elements
@@ -78,6 +78,7 @@ double cells_of(const Lattice& lattice) { return static_cast<double>(lattice.mes
 /// lattice of a block or as numbers of cubes.
 struct Resolutions {
   std::vector<int> every, reference;
+  std::set<int> all = {};
 };
 
 /// About in the ratio of 2 of edges, where there is room for it.
@@ -146,16 +147,12 @@ Experiment pilot_case(Experiment e, const IsotropicMaterial& material, const std
   add(pilot_reference_model);
   for (const std::string& name : models)
     if (name != pilot_reference_model) add(name);
-  std::vector<int> all = at.every;
-  all.insert(all.end(), at.reference.begin(), at.reference.end());
-  std::sort(all.begin(), all.end());
-  all.erase(std::unique(all.begin(), all.end()), all.end());
   e.body.coarsened = false;  // beside the others, by pilot_model()
   e.body.cells.clear();
   e.body.voxel_edges.clear();
   e.body.voxel_counts.clear();
   e.body.accuracies.clear();
-  for (const int n : all)
+  for (const int n : at.all)
     if (voxels)
       e.body.voxel_counts.push_back(n);
     else
@@ -170,43 +167,6 @@ ReferenceField reference_at(const std::vector<const Lattice*>& lattices, const s
   for (std::size_t i = 0; i < 3; ++i) fields.push_back(at_points(*lattices[i], p, solves[i], mesh.nodes));
   const auto ratio = [&](std::size_t i) { return std::cbrt(cells_of(*lattices[i + 1]) / cells_of(*lattices[i])); };
   return extrapolate(fields, nodal_volumes(mesh), {ratio(0), ratio(1)});
-}
-
-double product(const NodalVectors& a, const NodalVectors& b, const Eigen::VectorXd& weights) {
-  return weights.dot(a.cwiseProduct(b).rowwise().sum());
-}
-
-/// The order at which the last two of three steps along an error fall, edges h; between `slowest` and `fastest`.
-double order_of_errors(double coarse, double fine, double ratio) {
-  if (!(coarse > 0) || !(fine > 0)) return fastest;
-  return std::clamp(std::log(coarse / fine) / std::log(ratio), slowest, fastest);
-}
-
-/// By how much too stiff a body is whose displacements are short by an error; an error beyond it stays as it is.
-double stiffness_excess(double error) { return error < 0.9 ? error / (1 - error) : 10 * error; }
-
-/// What is the material has its solution as its limit, to which its errors fall.
-void extrapolate_errors(PilotModel& model) {
-  const std::size_t n = model.cells.size();
-  const double last = model.errors[n - 1];
-  model.beyond = {0, 0, last * last};
-  if (n < 2) return;
-  const double ratio = std::cbrt(model.cells[n - 1] / model.cells[n - 2]);
-  model.order = order_of_errors(stiffness_excess(model.errors[n - 2]), stiffness_excess(last), ratio);
-}
-
-/// Springs of another Poisson's ratio have a limit of their own; `fields`, two at least, are at the nodes of `truth`.
-/// @param share of the truth that errors are relative to
-void extrapolate_fields(PilotModel& model, const std::vector<NodalVectors>& fields, const NodalVectors& truth,
-                        const Eigen::VectorXd& weights, double share) {
-  const std::size_t n = model.cells.size();
-  const auto step = [&](std::size_t i) { return NodalVectors(fields[i] - fields[i - 1]); };
-  const auto length = [&](const NodalVectors& u) { return std::sqrt(product(u, u, weights)); };
-  const double ratio = std::cbrt(model.cells[n - 1] / model.cells[n - 2]),
-               size = share * share * product(truth, truth, weights);
-  if (n > 2) model.order = order_of_errors(length(step(n - 2)), length(step(n - 1)), ratio);
-  const NodalVectors b = -step(n - 1) / (std::pow(ratio, model.order) - 1), a = fields.back() - truth - b;
-  model.beyond = {product(a, a, weights) / size, product(a, b, weights) / size, product(b, b, weights) / size};
 }
 
 /// Whether the cells of a model can be measured in finer ones.
@@ -279,10 +239,7 @@ PilotModel pilot_model(const PilotRun& run, std::size_t number, bool measured = 
 } catch (const InputError&) {
   throw;
 } catch (const std::exception& e) {  // no network with this material's moduli, or of this few cells
-  PilotModel none;
-  none.label = label_of(run, number, measured);
-  none.failure = e.what();
-  return none;
+  return {.label = label_of(run, number, measured), .failure = e.what()};
 }
 
 /// Whether a case could ask for cells of several sizes.
@@ -331,10 +288,7 @@ PilotModel pilot_of_refined(const PilotRun& run) try {
                        run.material.density, cells, std::cbrt(run.prepared.lattices.front().region->volume / cells));
   return out;
 } catch (const std::exception& e) {  // nothing holds the body, or it has too few cells
-  PilotModel none;
-  none.label = run.prepared.experiment.models.front().label + " accuracy";
-  none.failure = e.what();
-  return none;
+  return {.label = run.prepared.experiment.models.front().label + " accuracy", .failure = e.what()};
 }
 
 /// The finite elements of a block on the lattices of the models; none where they cannot be run.
@@ -397,20 +351,13 @@ Pilot solve_pilot(const Experiment& experiment, const IsotropicMaterial& materia
   out.material = material;
   out.experiment_is_linear = experiment.model_kinematics() == Kinematics::linear;
   out.base = coarsest(experiment.body);
-  const Resolutions at = experiment.body.is_voxels() ? voxel_counts_of(size) : multiples_of(out.base, size);
+  Resolutions at = experiment.body.is_voxels() ? voxel_counts_of(size) : multiples_of(out.base, size);
+  for (const auto* some : {&at.every, &at.reference}) at.all.insert(some->begin(), some->end());
   const Experiment e = pilot_case(experiment, material, models, at, out.base);
   const PreparedCase prepared = prepare_lattices(e);
   check_loads(prepared);
   PilotRun run{prepared, material, {}, {}, {}, {}};
-  const auto lattice_at = [&](int n) {
-    const auto& counts = e.body.voxel_counts;
-    const std::size_t i = e.body.is_voxels()
-                              ? std::find(counts.begin(), counts.end(), n) - counts.begin()
-                              : std::find_if(e.body.cells.begin(), e.body.cells.end(), [&](const Cells& c) {
-                                  return c[0] == n * out.base[0];
-                                }) - e.body.cells.begin();
-    return &prepared.lattices[i];
-  };
+  const auto lattice_at = [&](int n) { return &prepared.lattices[std::distance(at.all.begin(), at.all.find(n))]; };
   for (const int n : at.every) run.every.push_back(lattice_at(n));
   for (const int n : at.reference) run.reference.push_back(lattice_at(n));
   for (const Lattice* lattice : run.reference) {
@@ -442,30 +389,6 @@ Pilot solve_pilot(const Experiment& experiment, const IsotropicMaterial& materia
   }
   if (can_be_refined(run)) out.models.push_back(pilot_of_refined(run));
   out.elements = pilot_elements(run);
-  return out;
-}
-
-Prediction predict(const Pilot& pilot, const PilotModel& model, double cells) {
-  const auto& n = model.cells;
-  const auto& e = model.errors;
-  Prediction out;
-  if (n.empty()) return {1, 10, true};
-  constexpr double off = 1e-3;  // of a number of cells, which a cut body does not have exactly
-  if (cells > n.back() * (1 + off)) {
-    const double t = std::pow(n.back() / cells, model.order / 3);
-    const double excess = stiffness_excess(std::sqrt(model.beyond.bb)) * t;
-    out.error = model.beyond.aa > 0 ? std::sqrt(std::max(0.0, model.beyond.at(t))) : excess / (1 + excess);
-    out.beyond = true;
-  } else {
-    std::size_t i = 1;
-    while (i + 1 < n.size() && n[i] < cells) ++i;
-    if (n.size() == 1) return {e[0], 2, true};
-    const double part = std::log(cells / n[i - 1]) / std::log(n[i] / n[i - 1]);
-    out.error = std::exp((1 - part) * std::log(std::max(e[i - 1], 1e-12)) + part * std::log(std::max(e[i], 1e-12)));
-    out.beyond = part < -off;
-  }
-  const double far = cells > n.back() ? std::cbrt(cells / n.back()) : 1;
-  out.factor = (1.05 + 0.7 * pilot.uncertainty / std::max(out.error, 1e-12)) * std::sqrt(far);
   return out;
 }
 

@@ -5,15 +5,34 @@
 #include <string>
 #include <vector>
 
-#include "comparisons/advise/load_shares.h"
 #include "comparisons/advise/speed.h"
 #include "comparisons/prepare/prepared_case.h"
+#include "meshes/mesh.h"
+#include "problem/material.h"
 
 namespace springproof {
+
+/// Shares of a body's strain energy, by what the sections normal to an axis do: they move apart (axial), tilt
+/// (bending), turn (torsion), slide (shear); the rest is strain that varies within a section (local), as beside
+/// supports and in limbs.  The sum is 1.
+struct LoadShares {
+  double axial = 0, bending = 0, torsion = 0, shear = 0, local = 0;
+  int axis = 0;  ///< 0: x
+
+  std::string largest() const;  ///< of the first four, the load by which the body is classified
+};
+
+/// About the axis that leaves the least rest, of equals the shortest.  For a displacement [m] at the nodes of a mesh of
+/// cubes (small strains).
+LoadShares load_shares(const Mesh& mesh, const NodalVectors& displacement, const IsotropicMaterial& material);
 
 /// The model whose solves, extrapolated, stand for the truth of a case; their time scales what the machine is measured
 /// at.
 inline constexpr const char* pilot_reference_model = "hybmss_avg";
+
+/// Rows of the model table that are advised where none is asked for.
+inline const std::vector<std::string> usual_models = {"hybmss_avg", "hybmss_bt", "hybmss",
+                                                      "emsm",       "msm_18",    "emsm_patch"};
 
 /// What is predicted of a displacement error.
 struct Prediction {
@@ -31,17 +50,17 @@ struct SquaredLine {
 /// One model or finite element of a case on coarse lattices.
 struct PilotModel {
   std::string label;
-  std::optional<StepCost> step;  ///< in cut cells: measured on the finest of these lattices
-  std::string failure;           ///< why there are no errors
-  std::vector<double> cells;     ///< of the lattices, ascending
-  std::vector<double> errors;    ///< on them, against the pilot's reference
-  double most_cells = HUGE_VAL;  ///< that it has on a lattice
-  double making = 0;             ///< of cells that are measured, or refined: CPU time per cell [s]
-  std::vector<double> promised;  ///< of refined cells: the error on each lattice by which a case asks for it
+  std::optional<StepCost> step = {};  ///< in cut cells: measured on the finest of these lattices
+  std::string failure = {};           ///< why there are no errors
+  std::vector<double> cells = {};     ///< of the lattices, ascending
+  std::vector<double> errors = {};    ///< on them, against the pilot's reference
+  double most_cells = HUGE_VAL;       ///< that it has on a lattice
+  double making = 0;                  ///< of cells that are measured, or refined: CPU time per cell [s]
+  std::vector<double> promised = {};  ///< of refined cells: the error on each lattice by which a case asks for it
   /// On finer lattices what the model is off from its limit falls with the edge to the power `order`.  The limit is the
   /// reference, and what falls is the excess of stiffness e / (1 - e); or, for springs of another Poisson's ratio, one
   /// of their own, a at t = 0.
-  SquaredLine beyond;
+  SquaredLine beyond = {};
   double order = 1;
 };
 
@@ -64,12 +83,22 @@ struct Pilot {
   Vec3 size = Vec3::Zero();                           ///< of the body or its bounding box [m]
   double volume = 0;                                  ///< of the lattices' cells [m^3]
   Cells base = {0, 0, 0};  ///< blocks: the coarsest cubic lattice, whose multiples are the others; else 0
+
+  const PilotModel* find(const std::string& label) const;  ///< a model or an element; null: there is none
 };
 
 /// Solves the case at one of its materials.  `models` are labels of the table's rows.
 /// @throws InputError for a case that cannot be used.
 Pilot solve_pilot(const Experiment& experiment, const IsotropicMaterial& material,
                   const std::vector<std::string>& models, const PilotSize& size = {});
+
+/// What is the material has its solution as its limit, to which its errors fall.
+void extrapolate_errors(PilotModel& model);
+
+/// Springs of another Poisson's ratio have a limit of their own; `fields`, two at least, are at the nodes of `truth`.
+/// @param share of the truth that errors are relative to
+void extrapolate_fields(PilotModel& model, const std::vector<NodalVectors>& fields, const NodalVectors& truth,
+                        const Eigen::VectorXd& weights, double share);
 
 /// The error of a model on a lattice of so many cells: solved, interpolated, or extrapolated.
 Prediction predict(const Pilot& pilot, const PilotModel& model, double cells);

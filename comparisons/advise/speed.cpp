@@ -105,10 +105,7 @@ Speed speed_of_model(const std::string& name, const IsotropicMaterial& material)
       material.density, many, 1);
   return out;
 } catch (const std::exception& e) {
-  Speed none;
-  none.model = name;
-  none.failure = e.what();
-  return none;
+  return {.model = name, .failure = e.what()};
 }
 
 Speed speed_of_element(const std::string& element, const IsotropicMaterial& material) try {
@@ -137,17 +134,14 @@ Speed speed_of_element(const std::string& element, const IsotropicMaterial& mate
   out.MiB_per_cell = solved[1].memory_MiB / out.solve_cells;
   return out;
 } catch (const std::exception& e) {
-  Speed none;
-  none.model = "fem_" + element;
-  none.failure = e.what();
-  return none;
+  return {.model = "fem_" + element, .failure = e.what()};
 }
 
-std::string this_machine() {
+std::string processor_name() {
   std::string line;
   for (std::ifstream in("/proc/cpuinfo"); std::getline(in, line);)
-    if (line.starts_with("model name")) return line.substr(line.find(':') + 2) + ", one core";
-  return "this machine, one core";
+    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+  return "";
 }
 
 }  // namespace springproof

@@ -27,7 +27,7 @@ StepCost step_cost(const std::function<MassSpringModel()>& build, double density
 /// Cost of one model or element as a function of the number of cells of a lattice, one core.
 struct Speed {
   std::string model;
-  StepCost step;
+  StepCost step = {};
   double solve_cells = 1, solve = 0;  ///< CPU seconds of set-up and solve of a block of so many cells
   double solve_power = 1;             ///< by which they grow with the number of cells
   double MiB_per_cell = 0;            ///< of a solve
@@ -42,7 +42,7 @@ Speed speed_of_model(const std::string& model, const IsotropicMaterial& material
 /// Of the finite element program, per cell; failure: it is not here.
 Speed speed_of_element(const std::string& element, const IsotropicMaterial& material);
 
-/// "AMD EPYC 7B13, one core".
-std::string this_machine();
+/// "AMD EPYC 7B13"; empty: not known.
+std::string processor_name();
 
 }  // namespace springproof

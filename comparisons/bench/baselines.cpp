@@ -12,7 +12,6 @@
 
 #include "comparisons/bench/bodies.h"
 #include "comparisons/bench/interrupt.h"
-#include "msm/dynamics/dynamics.h"
 #include "msm/dynamics/time_step.h"
 #include "msm/exchange/lammps.h"
 #include "problem/files/files.h"
@@ -61,20 +60,14 @@ std::string last_words(const std::string& output) {
 
 }  // namespace
 
-Relaxation relax(const MassSpringModel& model, const BoundaryConditions& conditions, double tolerance, double factor) {
-  Relaxation result;
+DynamicsResult relax(const MassSpringModel& model, const BoundaryConditions& conditions, double tolerance,
+                     double factor) {
   DynamicsOptions options;
   options.damping = factor * 2 * std::sqrt(lowest_frequency_squared(model, conditions));
   options.rest_tolerance = tolerance;
   options.duration = 200 * factor / options.damping * std::max(1.0, factor);
-  const double start = cpu_seconds();
-  const DynamicsResult motion = run_dynamics(
+  return run_dynamics(
       model, density, [&](double) { return conditions; }, options);
-  result.seconds = cpu_seconds() - start;
-  result.steps = motion.steps;
-  result.at_rest = motion.state.ok;
-  result.message = motion.state.message;
-  return result;
 }
 
 bool Lammps::available() { return !program().empty(); }

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "msm/dynamics/dynamics.h"
 #include "msm/embedding/boundary.h"
 #include "msm/laws/laws.h"
 #include "msm/statics/equilibrium.h"
@@ -11,18 +12,11 @@
 
 namespace springproof::bench {
 
-struct Relaxation {
-  bool at_rest = false;
-  long steps = 0;
-  double seconds = 0;  ///< CPU time of the steps; finding the damping is not counted
-  std::string message;
-};
-
 /// run_dynamics() from rest with the largest safe step and the best mass-proportional damping, 2 sqrt(lmin), lmin the
 /// smallest squared frequency [1/s^2] of the linearised model, until the unbalanced force falls below the tolerance.
-/// `factor` multiplies that damping.
-Relaxation relax(const MassSpringModel& model, const BoundaryConditions& conditions, double tolerance,
-                 double factor = 1);
+/// `factor` multiplies that damping, which it takes no time to find.
+DynamicsResult relax(const MassSpringModel& model, const BoundaryConditions& conditions, double tolerance,
+                     double factor = 1);
 
 /// The same springs in LAMMPS (lmp on PATH): atom_style bond, bond_style harmonic, no pair style, lists never rebuilt.
 class Lammps {

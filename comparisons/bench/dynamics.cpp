@@ -17,32 +17,28 @@ constexpr const char* per_spring = "ns per spring and step";
 constexpr double steps_of_the_paper = 10000;
 
 struct Context {
-  const BenchOptions& options;
+  const Options& options;
   const Machine& machine;
   Findings& findings;
   bool wide;  ///< the processor has AVX-512
   TimerOptions timer;
 
   double target(double avx512, double avx2) const { return wide ? avx512 : avx2; }
+
+  /// A row of two times of a step [s], which in `unit` are `factor` as much.
+  void add(const std::string& what, const std::string& size, const std::string& unit, double factor,
+           const TimedStep& ours, double seconds, const std::string& baseline, double others, Target target) const {
+    findings.rows.push_back({"dynamics", what, size, unit, factor * seconds, baseline, factor * others, target,
+                             usage_of(ours, seconds, machine), ours.how});
+  }
 };
 
 void progress(const std::string& what, const std::string& size) { to_stderr("dynamics: {}, {} ...\n", what, size); }
 
-double ns_per_spring(const TimedStep& motion, double seconds) { return 1e9 * seconds / double(motion.springs); }
+double ns_per_spring(const TimedStep& motion) { return 1e9 / double(motion.springs); }
 
-BenchRow speed_row(const Context& c, const std::string& what, const std::string& size, const TimedStep& motion,
-                   double seconds, const std::string& baseline, double baseline_seconds, Target target) {
-  const double to_ns = 1e9 / double(motion.springs);
-  return {"dynamics",
-          what,
-          size,
-          per_spring,
-          to_ns * seconds,
-          baseline,
-          to_ns * baseline_seconds,
-          target,
-          usage_of(motion, seconds, c.machine),
-          motion.how};
+MassSpringModel cube(const std::string& name, int n, double poisson_ratio) {
+  return lattice(name, {n, n, n}, poisson_ratio);
 }
 
 /// Largest difference of LAMMPS' forces from ours, over the largest force.
@@ -69,13 +65,12 @@ void against_peers(const Context& c, const std::string& name, const std::string&
     lammps_seconds = lammps->seconds_per_step(length, runs);
   }
   const std::vector<double> seconds = least_seconds({ours->advance, plain.advance}, c.timer);
-  if (lammps) {
-    lammps_seconds = std::min(lammps_seconds, lammps->seconds_per_step(length, runs));
-    c.findings.rows.push_back(
-        speed_row(c, name + " over LAMMPS", size, *ours, seconds[0], "LAMMPS", lammps_seconds, lammps_target));
-  }
-  c.findings.rows.push_back(
-      speed_row(c, name + " over the plain loop", size, *ours, seconds[0], "plain loop", seconds[1], plain_target));
+  const double to_ns = ns_per_spring(*ours);
+  if (lammps)
+    c.add(name + " over LAMMPS", size, per_spring, to_ns, *ours, seconds[0], "LAMMPS",
+          std::min(lammps_seconds, lammps->seconds_per_step(length, runs)), lammps_target);
+  c.add(name + " over the plain loop", size, per_spring, to_ns, *ours, seconds[0], "plain loop", seconds[1],
+        plain_target);
 }
 
 void springs_of_lattices(const Context& c) {
@@ -85,11 +80,9 @@ void springs_of_lattices(const Context& c) {
   };
   std::vector<Case> cases = {{10, 5, 4}, {15, 7.5, 4}, {20, 7.5, 4}, {30, 8.5, 4}, {63, 8.5, 4}};
   if (c.options.quick) cases.resize(1);
-  for (const Case& k : cases) {
-    const MassSpringModel model = lattice("hybmss_cf", {k.n, k.n, k.n}, 0.25);
-    const Target plain = k.n == 30 ? at_least(c.target(5.5, 2.8)) : Target{};
-    against_peers(c, "HybMSS-CF", fmt::format("{}^3", k.n), model, at_least(c.target(k.avx512, k.avx2)), plain);
-  }
+  for (const Case& k : cases)
+    against_peers(c, "HybMSS-CF", fmt::format("{}^3", k.n), cube("hybmss_cf", k.n, 0.25),
+                  at_least(c.target(k.avx512, k.avx2)), k.n == 30 ? at_least(c.target(5.5, 2.8)) : Target{});
 }
 
 /// 20,000 nodes fit into the caches of most processors, 300,000 into none.
@@ -106,93 +99,76 @@ void random_networks(const Context& c) {
     against_peers(c, "random network", fmt::format("{} nodes", k.nodes), random_springs(k.nodes), k.lammps, k.plain);
 }
 
-/// Time per step of one model, relative to another's.
-void overhead(const Context& c, const std::string& size, const std::string& name, const MassSpringModel& model,
-              const std::string& baseline, const MassSpringModel& other, Target target) {
-  progress(name + " over " + baseline, size);
-  const auto ours = fastest_motion(model), base = fastest_motion(other);
+/// Time per step of a model, with options, relative to another's.
+void overhead(const Context& c, int n, const std::string& what, const MassSpringModel& model,
+              const std::string& baseline, const MassSpringModel& other, double most,
+              const MotionOptions& options = {}) {
+  const std::string size = fmt::format("{}^3", n);
+  progress(what, size);
+  const auto ours = fastest_motion(model, options), base = fastest_motion(other);
   const std::vector<double> seconds = least_seconds({ours->advance, base->advance}, c.timer);
-  c.findings.rows.push_back({"dynamics", name + " over " + baseline, size, "us per step", 1e6 * seconds[0], baseline,
-                             1e6 * seconds[1], target, usage_of(*ours, seconds[0], c.machine), ours->how});
-}
-
-/// The same model with dashpots in its cells, or a share of consistent mass.
-void option_overhead(const Context& c, const std::string& size, const std::string& name, const MassSpringModel& model,
-                     const MotionOptions& options, Target target) {
-  progress(name, size);
-  const auto with = fastest_motion(model, options), without = fastest_motion(model);
-  const std::vector<double> seconds = least_seconds({with->advance, without->advance}, c.timer);
-  c.findings.rows.push_back({"dynamics", name, size, "us per step", 1e6 * seconds[0], "without", 1e6 * seconds[1],
-                             target, usage_of(*with, seconds[0], c.machine), with->how});
+  c.add(what, size, "us per step", 1e6, *ours, seconds[0], baseline, seconds[1], at_most(most));
 }
 
 void overheads(const Context& c) {
   for (const int n : c.options.quick ? std::vector{10} : std::vector{10, 30}) {
-    const std::string size = fmt::format("{}^3", n);
-    const auto block = [&](const char* name, double nu) { return lattice(name, {n, n, n}, nu); };
-    const MassSpringModel hybmss = block("hybmss", 0.3), corrected = block("hybmss_bt", 0.3),
-                          averaged = block("hybmss_avg", 0.3), msm = block("msm_18", 0.25);
-    overhead(c, size, "HybMSS", hybmss, "HybMSS-CF", block("hybmss_cf", 0.25), at_most(1.35));
-    overhead(c, size, "HybMSS", hybmss, "HybMSS-FD", block("hybmss_fd", 0.3), at_most(1.5));
-    overhead(c, size, "HybMSS, hourglass correction", corrected, "HybMSS", hybmss, at_most(1.35));
-    overhead(c, size, "averaged springs", averaged, "HybMSS", hybmss, at_most(1.6));
-    overhead(c, size, "averaged springs, neo-Hooke", lattice("hybmss_avg", {n, n, n}, 0.3, {{"curve", "neo_hooke"}}),
-             "HybMSS", hybmss, at_most(1.6));
+    const MassSpringModel hybmss = cube("hybmss", n, 0.3), corrected = cube("hybmss_bt", n, 0.3),
+                          averaged = cube("hybmss_avg", n, 0.3), msm = cube("msm_18", n, 0.25);
+    overhead(c, n, "HybMSS over HybMSS-CF", hybmss, "HybMSS-CF", cube("hybmss_cf", n, 0.25), 1.35);
+    overhead(c, n, "HybMSS over HybMSS-FD", hybmss, "HybMSS-FD", cube("hybmss_fd", n, 0.3), 1.5);
+    overhead(c, n, "HybMSS, hourglass correction over HybMSS", corrected, "HybMSS", hybmss, 1.35);
+    overhead(c, n, "averaged springs over HybMSS", averaged, "HybMSS", hybmss, 1.6);
+    overhead(c, n, "averaged springs, neo-Hooke over HybMSS",
+             lattice("hybmss_avg", {n, n, n}, 0.3, {{"curve", "neo_hooke"}}), "HybMSS", hybmss, 1.6);
     const auto viscous = [](const MassSpringModel& model) {
       return MotionOptions{.viscosity = Viscosity::of(model, {youngs_modulus, 0.3, density}, 1e-3)};
     };
-    option_overhead(c, size, "HybMSS with viscosity", hybmss, viscous(hybmss), at_most(2));
-    option_overhead(c, size, "averaged springs with viscosity", averaged, viscous(averaged), at_most(2));
+    overhead(c, n, "HybMSS with viscosity", hybmss, "without", hybmss, 2, viscous(hybmss));
+    overhead(c, n, "averaged springs with viscosity", averaged, "without", averaged, 2, viscous(averaged));
     const MotionOptions half{.mass_consistency = 0.5};
-    option_overhead(c, size, "HybMSS with averaged mass", hybmss, half, at_most(1.6));
-    option_overhead(c, size, "HybMSS, hourglass correction, with averaged mass", corrected, half, at_most(1.6));
-    option_overhead(c, size, "averaged springs with averaged mass", averaged, half, at_most(1.6));
-    overhead(c, size, "eMSM as published", lattice("emsm", {n, n, n}, 0.3, {{"dispersion", "published"}}),
-             "MSM of 18 springs", msm, at_most(1.65));
-    overhead(c, size, "eMSM, exact nodal volumes", block("emsm", 0.3), "MSM of 18 springs", msm, at_most(1.65));
+    overhead(c, n, "HybMSS with averaged mass", hybmss, "without", hybmss, 1.6, half);
+    overhead(c, n, "HybMSS, hourglass correction, with averaged mass", corrected, "without", corrected, 1.6, half);
+    overhead(c, n, "averaged springs with averaged mass", averaged, "without", averaged, 1.6, half);
+    overhead(c, n, "eMSM as published over MSM of 18 springs",
+             lattice("emsm", {n, n, n}, 0.3, {{"dispersion", "published"}}), "MSM of 18 springs", msm, 1.65);
+    overhead(c, n, "eMSM, exact nodal volumes over MSM of 18 springs", cube("emsm", n, 0.3), "MSM of 18 springs", msm,
+             1.65);
   }
 }
 
-RelaxingCells two_branches(const MassSpringModel& model) {
-  return RelaxingCells::of(model, {youngs_modulus, 0.3, density}, {{{0.116, 0.27}, {0.057, 2.6}}});
-}
-
-std::vector<int> balls(const BenchOptions& options) {
-  return options.quick ? std::vector{500} : std::vector{10000, 100000};
-}
+std::vector<int> balls(const Options& options) { return options.quick ? std::vector{500} : std::vector{10000, 100000}; }
 
 void cut_cells(const Context& c) {
-  for (const int cells : balls(c.options)) {
-    const MassSpringModel model = cut_ball(cells, 0.3);
-    const std::string size = fmt::format("{} cells", model.network.cells.size());
+  for (const int about : balls(c.options)) {
+    const MassSpringModel model = cut_ball(about, 0.3);
+    const std::size_t cells = model.network.cells.size();
+    const std::string size = fmt::format("{} cells", cells);
     progress("averaged springs in cut cells", size);
-    const auto ours = fastest_motion(model), fp32 = fastest_motion(model, {.precision = Precision::float32});
+    const RelaxingCells two = RelaxingCells::of(model, {youngs_modulus, 0.3, density}, {{{0.116, 0.27}, {0.057, 2.6}}});
+    const auto ours = fastest_motion(model), fp32 = fastest_motion(model, {.precision = Precision::float32}),
+               relaxing = fastest_motion(model, {.relaxation = two});
     const TimedStep loops = motion_by_forces(model);
-    const auto relaxing = fastest_motion(model, {.relaxation = two_branches(model)});
     const std::vector<double> seconds =
         least_seconds({ours->advance, loops.advance, fp32->advance, relaxing->advance}, c.timer);
-    const double to_ns = 1e9 / double(model.network.cells.size());
-    const auto row = [&](const char* what, const TimedStep& motion, double own, const char* baseline, double other,
-                         Target target) {
-      c.findings.rows.push_back({"dynamics", what, size, "ns per cell and step", to_ns * own, baseline, to_ns * other,
-                                 target, usage_of(motion, own, c.machine), motion.how});
+    const auto row = [&](const std::string& what, const TimedStep& motion, double own, const std::string& baseline,
+                         double other, Target target) {
+      c.add(what + "averaged springs in cut cells", size, "ns per cell and step", 1e9 / double(cells), motion, own,
+            baseline, other, target);
     };
-    row("averaged springs in cut cells", *ours, seconds[0], "loops of the law", seconds[1], at_least(6));
-    row("FP32 over FP64, averaged springs in cut cells", *fp32, seconds[2], "FP64", seconds[0], at_least(1.5));
-    row("two branches over none, averaged springs in cut cells", *relaxing, seconds[3], "none", seconds[0],
-        model.network.cells.size() < 30000 ? at_most(1.3) : Target{});
+    row("", *ours, seconds[0], "loops of the law", seconds[1], at_least(6));
+    row("FP32 over FP64, ", *fp32, seconds[2], "FP64", seconds[0], at_least(1.5));
+    row("two branches over none, ", *relaxing, seconds[3], "none", seconds[0], cells < 30000 ? at_most(1.3) : Target{});
   }
 }
 
 void single_precision(const Context& c, int n) {
   const std::string size = fmt::format("{}^3", n);
-  const MassSpringModel model = lattice("hybmss_cf", {n, n, n}, 0.25);
+  const MassSpringModel model = cube("hybmss_cf", n, 0.25);
   const auto fp32 = fastest_motion(model, {.precision = Precision::float32}), fp64 = fastest_motion(model);
-  if (!fp32) return c.findings.remarks.push_back("no kernel in single precision");
   progress("HybMSS-CF in single precision", size);
   const std::vector<double> seconds = least_seconds({fp32->advance, fp64->advance}, c.timer);
-  c.findings.rows.push_back(
-      speed_row(c, "FP32 over FP64, HybMSS-CF", size, *fp32, seconds[0], "FP64", seconds[1], at_least(2)));
+  c.add("FP32 over FP64, HybMSS-CF", size, per_spring, ns_per_spring(*fp32), *fp32, seconds[0], "FP64", seconds[1],
+        at_least(2));
 }
 
 void several_threads(const Context& c, const std::string& name, const std::string& size, const MassSpringModel& model,
@@ -211,22 +187,14 @@ void several_threads(const Context& c, const std::string& name, const std::strin
     return c.findings.remarks.push_back(fmt::format(
         "{} threads, {}, {}: not measured, the machine is busy (one thread takes {:.1f} times its CPU time)", number,
         name, size, seconds[1] / alone));
-  const Target target = number == 2 ? at_least(limit) : Target{};
-  c.findings.rows.push_back({"dynamics",
-                             fmt::format("{} threads over one, {}", number, name),
-                             size,
-                             "us per step, wall",
-                             1e6 * seconds[0],
-                             "one thread",
-                             1e6 * seconds[1],
-                             target,
-                             {},
-                             several->how});
+  c.add(fmt::format("{} threads over one, {}", number, name), size, "us per step, wall", 1e6, *several, seconds[0],
+        "one thread", seconds[1], number == 2 ? at_least(limit) : Target{});
+  c.findings.rows.back().usage.reset();  // which is of one core
 }
 
 void threads(const Context& c) {
   for (const int n : c.options.quick ? std::vector{10} : std::vector{10, 20, 30, 63})
-    several_threads(c, "HybMSS-CF", fmt::format("{}^3", n), lattice("hybmss_cf", {n, n, n}, 0.25),
+    several_threads(c, "HybMSS-CF", fmt::format("{}^3", n), cube("hybmss_cf", n, 0.25),
                     n <= 10   ? 1.3
                     : n <= 20 ? 1.8
                               : 1.9);
@@ -241,33 +209,25 @@ void threads(const Context& c) {
 void growth(const Context& c, int small, int large) {
   const std::string size = fmt::format("{}^3 over {}^3", large, small);
   progress("growth of the cost per spring", size);
-  const auto work = [&] {
-    const MassSpringModel a = lattice("hybmss_cf", {large, large, large}, 0.25),
-                          b = lattice("hybmss_cf", {small, small, small}, 0.25);
+  const nlohmann::json ns = in_child([&] {
+    const MassSpringModel a = cube("hybmss_cf", large, 0.25), b = cube("hybmss_cf", small, 0.25);
     const auto first = fastest_motion(a), second = fastest_motion(b);
     const std::vector<double> seconds = least_seconds({first->advance, second->advance}, c.timer);
-    return nlohmann::json{{"large", ns_per_spring(*first, seconds[0])}, {"small", ns_per_spring(*second, seconds[1])}};
-  };
-  const nlohmann::json a = in_child(work);
-  c.findings.rows.push_back({"dynamics", "growth with size, HybMSS-CF", size, per_spring, a.at("large"),
-                             fmt::format("{}^3", small), a.at("small"), at_most(1.4)});
+    return nlohmann::json{seconds[0] * ns_per_spring(*first), seconds[1] * ns_per_spring(*second)};
+  });
+  c.findings.rows.push_back({"dynamics", "growth with size, HybMSS-CF", size, per_spring, ns[0],
+                             fmt::format("{}^3", small), ns[1], at_most(1.4)});
 }
 
 void memory(const Context& c, int n) {
-  const MassSpringModel model = lattice("hybmss_cf", {n, n, n}, 0.25);
+  const MassSpringModel model = cube("hybmss_cf", n, 0.25);
   const auto ours = fastest_motion(model);
   const TimedStep plain = plain_motion(model.network);
-  c.findings.rows.push_back(
-      {"dynamics",
-       "memory of HybMSS-CF",
-       fmt::format("{}^3", n),
-       "bytes per node",
-       ours->work.kept / double(ours->nodes),
-       "",
-       0,
-       at_most(80),
-       {},
-       fmt::format("{}; the plain loop keeps {:.0f}", ours->how, plain.work.kept / double(plain.nodes))});
+  BenchRow row{"dynamics", "memory of HybMSS-CF", fmt::format("{}^3", n), "bytes per node"};
+  row.value = ours->work.kept / double(ours->nodes);
+  row.target = at_most(80);
+  row.note = fmt::format("{}; the plain loop keeps {:.0f}", ours->how, plain.work.kept / double(plain.nodes));
+  c.findings.rows.push_back(row);
 }
 
 /// The paper's main experiment, for which it prints the time.
@@ -278,25 +238,20 @@ void headline(const Context& c) {
   };
   for (const Case& k : {Case{"paper's 10,000 steps, no correction", "hybmss_cf", 0.25, 2.44},
                         Case{"paper's 10,000 steps, volume correction", "hybmss", 0.3, 5.58}}) {
-    const MassSpringModel model = lattice(k.model, {10, 10, 10}, k.nu);
+    const MassSpringModel model = cube(k.model, 10, k.nu);
     const auto ours = fastest_motion(model);
-    const double seconds = least_seconds({ours->advance}, c.timer)[0];
-    c.findings.rows.push_back({"dynamics",
-                               k.name,
-                               "10^3",
-                               "s",
-                               steps_of_the_paper * seconds,
-                               "Golec et al. (2019), their machine",
-                               k.published,
-                               {},
-                               {},
-                               ours->how});
+    BenchRow row{"dynamics", k.name, "10^3", "s"};
+    row.value = steps_of_the_paper * least_seconds({ours->advance}, c.timer)[0];
+    row.baseline = "Golec et al. (2019), their machine";
+    row.baseline_value = k.published;
+    row.note = ours->how;
+    c.findings.rows.push_back(row);
   }
 }
 
 }  // namespace
 
-void bench_dynamics(const BenchOptions& options, const Machine& machine, Findings& findings) {
+void bench_dynamics(const Options& options, const Machine& machine, Findings& findings) {
   const bool quick = options.quick;
   const bool wide = machine.widest().instruction_set == "avx512";
   const Context c{options, machine, findings, wide, {quick ? 2e-3 : 5e-3, quick ? 0.05 : 0.5, Clock::thread}};

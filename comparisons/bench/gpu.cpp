@@ -15,7 +15,7 @@ struct Explicit {
 };
 
 /// One model's steps in double precision over several threads', and in single precision over double.
-void steps(const BenchOptions& options, const Explicit& e, int n, Findings& findings) {
+void steps(const Options& options, const Explicit& e, int n, Findings& findings) {
   const std::string size = fmt::format("{}^3", n);
   to_stderr("gpu: {}, {} ...\n", e.name, size);
   const MassSpringModel model = lattice(e.model, {n, n, n}, e.poisson_ratio);
@@ -28,17 +28,10 @@ void steps(const BenchOptions& options, const Explicit& e, int n, Findings& find
                processor = seconds_of_step({.threads = options.threads});
   const double to_ns = 1e9 / double(model.network.cells.size()), nodes = double(model.network.nodes());
   const auto row = [&](const std::string& what, double own, const std::string& baseline, double other, int bytes) {
-    findings.rows.push_back({"gpu",
-                             what,
-                             size,
-                             "ns per cell and step, wall",
-                             to_ns * own,
-                             baseline,
-                             to_ns * other,
-                             {},
-                             {},
-                             fmt::format("{}, {:.0f} GB/s of places, velocities and kinds", gpu::device_name(),
-                                         1e-9 * nodes * (12 * bytes + 8) / own)});
+    BenchRow r{"gpu", what, size, "ns per cell and step, wall", to_ns * own, baseline, to_ns * other};
+    r.note = fmt::format("{}, {:.0f} GB/s of places, velocities and kinds", gpu::device_name(),
+                         1e-9 * nodes * (12 * bytes + 8) / own);
+    findings.rows.push_back(r);
   };
   row(e.name, fp64, fmt::format("{} threads", options.threads), processor, 8);
   row(std::string("FP32 over FP64, ") + e.name, fp32, "FP64", fp64, 4);
@@ -46,7 +39,7 @@ void steps(const BenchOptions& options, const Explicit& e, int n, Findings& find
 
 }  // namespace
 
-void bench_gpu(const BenchOptions& options, Findings& findings) {
+void bench_gpu(const Options& options, Findings& findings) {
   if (gpu::device_name().empty())
     return findings.remarks.push_back(gpu::built_for_gpu() ? "no GPU is found: no rows of it"
                                                            : "built without SPRINGPROOF_CUDA: no rows of a GPU");

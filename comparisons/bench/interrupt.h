@@ -11,12 +11,7 @@ struct Interrupted : std::runtime_error {
   Interrupted() : std::runtime_error("interrupted") {}
 };
 
-/// From here on SIGINT and SIGTERM end the running child processes and make throw_if_interrupted() throw.
-void catch_interrupts();
-
-bool interrupted();
-
-/// @throws Interrupted
+/// @throws Interrupted once the children are (problem/processes/child.h).
 void throw_if_interrupted();
 
 /// Runs work in a child process, which has its own memory and can be killed: springproof::in_child() for JSON.

@@ -7,19 +7,11 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "comparisons/bench/kernels/bench_kernel_choice.h"
+#include "comparisons/advise/speed.h"
 #include "comparisons/bench/timer.h"
-#include "msm/kernels/instruction_set.h"
 
 namespace springproof::bench {
 namespace {
-
-std::string processor_name() {
-  std::string line;
-  for (std::ifstream in("/proc/cpuinfo"); std::getline(in, line);)
-    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
-  return "unknown";
-}
 
 /// "512K", "32M" in bytes.
 double size_of(const std::string& text) {
@@ -114,8 +106,17 @@ const MemoryLevel& Machine::level_for(double bytes) const {
   return memory.back();
 }
 
+BenchKernels kernels_of([[maybe_unused]] InstructionSet set) {
+#ifdef SPRINGPROOF_X86_BENCH_KERNELS
+  if (set == InstructionSet::avx2) return avx2::bench_kernels();
+  if (set == InstructionSet::avx512) return avx512::bench_kernels();
+#endif
+  return portable::bench_kernels();
+}
+
 Machine this_machine() {
-  return {processor_name(), std::max(1, int(std::thread::hardware_concurrency())), {}, caches()};
+  const std::string name = processor_name();
+  return {name.empty() ? "unknown" : name, std::max(1, int(std::thread::hardware_concurrency())), {}, caches()};
 }
 
 void measure_limits(bool quick, Machine& machine) {

@@ -5,6 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "comparisons/bench/kernels/bench_kernels.h"
+#include "msm/kernels/instruction_set.h"
+
 namespace springproof::bench {
 
 /// A level of the memory as one core sees it.
@@ -32,6 +35,9 @@ struct Machine {
   /// The nearest level that holds `bytes` with a tenth of its capacity to spare.
   const MemoryLevel& level_for(double bytes) const;
 };
+
+/// The bench's kernels for an instruction set of this processor.
+BenchKernels kernels_of(InstructionSet set);
 
 /// Name, cores and caches; no limits.
 Machine this_machine();

@@ -3,12 +3,14 @@
 // A separate program because it may link PETSc, whose libraries would slow the start of springproof.
 
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <nlohmann/json.hpp>
 
 #include "comparisons/bench/benches.h"
-#include "comparisons/bench/interrupt.h"
 #include "msm/kernels/instruction_set.h"
 #include "problem/files/files.h"
+#include "problem/processes/child.h"
+#include "problem/processes/interrupts.h"
 #include "problem/system/input_error.h"
 #include "problem/system/streams.h"
 
@@ -18,7 +20,7 @@ using namespace springproof;
 using namespace springproof::bench;
 using Json = nlohmann::json;
 
-void add_options(CLI::App& app, BenchOptions& options) {
+void add_options(CLI::App& app, Options& options) {
   app.add_option(
          "WHAT", options.what,
          "dynamics (steps, against LAMMPS and a plain loop), statics (equilibrium, against PETSc CG + GAMG and damped "
@@ -47,16 +49,9 @@ void add_options(CLI::App& app, BenchOptions& options) {
       "measured is written).");
 }
 
-bool wants(const BenchOptions& options, const char* what) { return options.what == what || options.what == "all"; }
+bool wants(const Options& options, const char* what) { return options.what == what || options.what == "all"; }
 
-struct Measured {
-  Machine machine = this_machine();
-  Findings findings;
-  Json fem;
-};
-
-void measure(const BenchOptions& options, Measured& m) {
-  auto& [machine, findings, fem] = m;
+void measure(const Options& options, Machine& machine, Findings& findings, Json& fem) {
   if (wants(options, "statics")) bench_statics(options, findings);
   if (wants(options, "dynamics")) {
     to_stderr("limits of this machine ...\n");
@@ -67,14 +62,15 @@ void measure(const BenchOptions& options, Measured& m) {
   if (wants(options, "gpu")) bench_gpu(options, findings);
 }
 
-int run(const BenchOptions& options) {
-  catch_interrupts();
-  Measured measured;
-  auto& [machine, findings, fem] = measured;
+int run(const Options& options) {
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { interrupt_children(); });
+  Machine machine = this_machine();
+  Findings findings;
+  Json fem;
   try {
-    measure(options, measured);
+    measure(options, machine, findings, fem);
   } catch (const std::runtime_error&) {
-    if (!interrupted()) throw;
+    if (!children_interrupted()) throw;
     findings.remarks.push_back("interrupted: the rows are those measured before");
   }
   if (options.quick)
@@ -87,14 +83,14 @@ int run(const BenchOptions& options) {
   to_stdout("{}", table_text(machine, findings));
   if (!options.json.empty())
     write_named_file(options.json, document.dump(1, ' ', false, Json::error_handler_t::replace));
-  if (interrupted()) return 130;
+  if (children_interrupted()) return interrupted_status;
   return complete(findings) ? 0 : 1;
 }
 
 int parse_and_run(int argc, char** argv) {
   CLI::App app{"What things cost on this machine: each row beside its baseline, measured in the same run.",
                "springproof bench"};
-  BenchOptions options;
+  Options options;
   add_options(app, options);
   try {
     app.parse(argc, argv);

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "comparisons/bench/bodies.h"
-#include "comparisons/bench/kernels/bench_kernel_choice.h"
 #include "msm/dynamics/list_motion.h"
 #include "msm/dynamics/time_step.h"
 #include "msm/kernels/cell_forces.h"
@@ -40,42 +39,57 @@ class Stepper {
   Eigen::VectorXd dt_over_mass_;
 };
 
-struct PlainState {
-  std::vector<PlainNode> nodes;
-  std::vector<PlainSpring> springs;
-  std::vector<double> dt_over_mass;
+/// One array of nodes, one of springs, a loop over each.
+struct PlainSteps {
+  double dt;
+  std::vector<PlainNode> nodes = {};
+  std::vector<PlainSpring> springs = {};
+  std::vector<double> dt_over_mass = {};
+
+  void advance(long steps) {
+    for (const auto step = kernels_of(instruction_set()).plain_step; steps > 0; --steps)
+      step(nodes.data(), long(nodes.size()), springs.data(), long(springs.size()), dt_over_mass.data(), dt);
+  }
 };
 
-}  // namespace
-
-Work operations(const MassSpringModel& model) {
+/// Operations of one step of the model, for any implementation; streamed and kept bytes.
+Work work_of(const MassSpringModel& model, double streamed, double kept) {
   const Network& net = model.network;
   const double m = double(net.springs.size()), n = double(net.nodes());
-  Work w{21 * m + 12 * n, m, 0, 0};
+  Work w{21 * m + 12 * n, m, streamed, kept};
   if (law_of<VolumeCorrection>(model)) w.flops += 156 * double(net.cells.size());
   if (law_of<AveragedSprings>(model)) w.flops += 590 * double(net.cells.size());  // Hencky's curve
   if (law_of<MomentumDispersion>(model)) w.flops += 8 * m;
   return w;
 }
 
-namespace {
+/// Steps of a kernel that has advance().
+template <class Kernel>
+TimedStep timed(const std::string& how, const MassSpringModel& model, const std::shared_ptr<Kernel>& kernel,
+                double streamed, double kept, Precision precision = Precision::float64) {
+  return {how,
+          [kernel](long steps) { kernel->advance(steps); },
+          model.network.nodes(),
+          long(model.network.springs.size()),
+          work_of(model, streamed, kept),
+          precision};
+}
 
-TimedStep new_motion(const std::string& how, const MassSpringModel& model, Precision precision) {
-  return {how, {}, model.network.nodes(), long(model.network.springs.size()), operations(model), precision};
+std::string words_of(const std::string& kernel, int threads) {
+  return fmt::format("{}, {}{}", kernel, name_of(instruction_set()),
+                     threads == 1 ? "" : fmt::format(", {} threads", threads));
 }
 
 TimedStep timed_lattice(const MassSpringModel& model, const MotionOptions& options) {
   MotionOptions half = options;
-  const double safe = safe_time_step(model, density, false, options.mass_consistency);
+  const double safe = safe_time_step(model, density, false, options.mass_consistency),
+               n = double(model.network.nodes());
   half.time_step = 0.5 * viscous_time_step(model, density, options.viscosity, safe, options.mass_consistency);
   const std::shared_ptr<LatticeMotion> kernel = springproof::lattice_motion(model, density, half);
   const NodalVectors x = moved(model.network);
   kernel->set_state(x, NodalVectors::Zero(x.rows(), 3));
-  TimedStep motion = new_motion(kernel->description(), model, options.precision);
-  motion.work.streamed = (options.precision == Precision::float64 ? 96.0 : 48.0) * double(motion.nodes);
-  motion.work.kept = kernel->bytes_per_node() * double(motion.nodes);
-  motion.advance = [kernel](long steps) { kernel->advance(steps); };
-  return motion;
+  return timed(kernel->description(), model, kernel, (options.precision == Precision::float64 ? 96.0 : 48.0) * n,
+               kernel->bytes_per_node() * n, options.precision);
 }
 
 template <class Real>
@@ -87,16 +101,11 @@ TimedStep motion_of_cells(const MassSpringModel& model, const MotionOptions& opt
   const auto kernel = std::make_shared<ListMotion<Real>>(std::move(forces), model, density, half);
   const NodalVectors x = moved(model.network);
   kernel->set_state(x, NodalVectors::Zero(x.rows(), 3));
-  TimedStep motion =
-      new_motion(fmt::format("{}, {}{}", kernel->kernel(), name_of(instruction_set()),
-                             kernel->threads() == 1 ? "" : fmt::format(", {} threads", kernel->threads())),
-                 model, options.precision);
-  const double c = double(model.network.cells.size()), n = double(motion.nodes), real = sizeof(Real),
+  const double c = double(model.network.cells.size()), n = double(model.network.nodes()), real = sizeof(Real),
                state = overstrain_count * double(options.relaxation.relaxation.branches.size());
-  motion.work.streamed = ((10 + 2 * state) * real + 32) * c + 20 * real * n;
-  motion.work.kept = ((10 + state) * real + 32) * c + (24 * real + 28) * n;
-  motion.advance = [kernel](long steps) { kernel->advance(steps); };
-  return motion;
+  return timed(words_of(kernel->kernel(), kernel->threads()), model, kernel,
+               ((10 + 2 * state) * real + 32) * c + 20 * real * n,
+               ((10 + state) * real + 32) * c + (24 * real + 28) * n, options.precision);
 }
 
 /// Entries of the kernel are nearly as many as springs.
@@ -106,28 +115,19 @@ TimedStep motion_of_springs(const MassSpringModel& model, const MotionOptions& o
   const auto kernel =
       std::make_shared<ListMotion<Real>>(std::make_unique<ListForces<Real>>(model), model, density, half);
   kernel->set_conditions(clamped_bottom(model.network, 0.5 * edge));
-  const int threads = kernel->threads();
-  TimedStep motion = new_motion(fmt::format("list kernel, {}{}", name_of(instruction_set()),
-                                            threads == 1 ? "" : fmt::format(", {} threads", threads)),
-                                model, options.precision);
-  const double m = double(motion.springs), n = double(motion.nodes), real = sizeof(Real);
+  const double m = double(model.network.springs.size()), n = double(model.network.nodes()), real = sizeof(Real);
   const bool disperses = dispersion_of(model) != nullptr;
-  motion.work.streamed = disperses ? (10 * real + 10) * m + 49 * real * n : (2 * real + 5) * m + 20 * real * n;
-  motion.work.kept = disperses ? (8 * real + 9) * m + (26 * real + 28) * n : (2 * real + 9) * m + (24 * real + 28) * n;
-  motion.advance = [kernel](long steps) { kernel->advance(steps); };
-  return motion;
+  return timed(words_of("list kernel", kernel->threads()), model, kernel,
+               disperses ? (10 * real + 10) * m + 49 * real * n : (2 * real + 5) * m + 20 * real * n,
+               disperses ? (8 * real + 9) * m + (26 * real + 28) * n : (2 * real + 9) * m + (24 * real + 28) * n,
+               options.precision);
 }
 
 }  // namespace
 
 TimedStep motion_by_forces(const MassSpringModel& model) {
-  TimedStep motion = new_motion("forces()", model, Precision::float64);
-  const double m = double(motion.springs), n = double(motion.nodes);
-  motion.work.streamed = 24 * m + 216 * n;
-  motion.work.kept = 24 * m + 80 * n;
-  const auto stepper = std::make_shared<Stepper>(model);
-  motion.advance = [stepper](long steps) { stepper->advance(steps); };
-  return motion;
+  const double m = double(model.network.springs.size()), n = double(model.network.nodes());
+  return timed("forces()", model, std::make_shared<Stepper>(model), 24 * m + 216 * n, 24 * m + 80 * n);
 }
 
 std::optional<TimedStep> fastest_motion(const MassSpringModel& model, const MotionOptions& options) {
@@ -144,41 +144,23 @@ std::optional<TimedStep> fastest_motion(const MassSpringModel& model, const Moti
 }
 
 TimedStep plain_motion(const Network& network) {
-  const MassSpringModel springs{network, {Springs{}}};
-  const double dt = 0.5 * safe_time_step(springs, density);
-  const auto state = std::make_shared<PlainState>();
+  const MassSpringModel model{network, {Springs{}}};
+  const auto steps = std::make_shared<PlainSteps>(PlainSteps{0.5 * safe_time_step(model, density)});
   const NodalVectors x = moved(network);
-  for (Eigen::Index i = 0; i < x.rows(); ++i) state->nodes.push_back({{x(i, 0), x(i, 1), x(i, 2)}, {}, {}});
-  for (const Spring& s : network.springs) state->springs.push_back({s.i, s.j, s.stiffness, s.rest_length});
-  for (const double mass : masses(network, density)) state->dt_over_mass.push_back(dt / mass);
+  for (Eigen::Index i = 0; i < x.rows(); ++i) steps->nodes.push_back({{x(i, 0), x(i, 1), x(i, 2)}, {}, {}});
+  for (const Spring& s : network.springs) steps->springs.push_back({s.i, s.j, s.stiffness, s.rest_length});
+  for (const double mass : masses(network, density)) steps->dt_over_mass.push_back(steps->dt / mass);
   const double m = double(network.springs.size()), n = double(network.nodes());
-  TimedStep motion{"plain loop", {}, network.nodes(), long(network.springs.size()), operations(springs)};
-  motion.work.streamed = 24 * m + 296 * n;
-  motion.work.kept = 24 * m + 80 * n;
-  const auto step = kernels_of(instruction_set()).plain_step;
-  motion.advance = [state, step, dt](long steps) {
-    for (; steps > 0; --steps)
-      step(state->nodes.data(), long(state->nodes.size()), state->springs.data(), long(state->springs.size()),
-           state->dt_over_mass.data(), dt);
-  };
-  return motion;
+  return timed("plain loop", model, steps, 24 * m + 296 * n, 24 * m + 80 * n);
 }
-
-namespace {
-
-/// Lower bound [s] on the time that the arithmetic of a step takes on one core.
-double arithmetic_limit(const TimedStep& motion, const Arithmetic& core) {
-  const bool fp64 = motion.precision == Precision::float64;
-  return std::max(1e-9 * motion.work.flops / (fp64 ? core.gflops64 : core.gflops32),
-                  1e-9 * motion.work.roots * (fp64 ? core.root64 : core.root32));
-}
-
-}  // namespace
 
 Usage usage_of(const TimedStep& motion, double seconds, const Machine& machine) {
-  const MemoryLevel& level = machine.level_for(motion.work.kept);
-  return {motion.work.kept / double(motion.nodes), 1e-9 * motion.work.streamed / seconds / level.GB_s,
-          arithmetic_limit(motion, machine.widest()) / seconds};
+  const auto& [flops, roots, streamed, kept] = motion.work;
+  const Arithmetic& core = machine.widest();
+  const bool fp64 = motion.precision == Precision::float64;
+  const double least = std::max(1e-9 * flops / (fp64 ? core.gflops64 : core.gflops32),
+                                1e-9 * roots * (fp64 ? core.root64 : core.root32));  // by the arithmetic of one core
+  return {kept / double(motion.nodes), 1e-9 * streamed / seconds / machine.level_for(kept).GB_s, least / seconds};
 }
 
 }  // namespace springproof::bench

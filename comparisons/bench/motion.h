@@ -42,7 +42,4 @@ TimedStep motion_by_forces(const MassSpringModel& model);
 /// How well a motion that takes `seconds` per step uses one core.
 Usage usage_of(const TimedStep& motion, double seconds, const Machine& machine);
 
-/// Operations of one step of the model, for any implementation.
-Work operations(const MassSpringModel& model);
-
 }  // namespace springproof::bench

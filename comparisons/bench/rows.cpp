@@ -12,13 +12,8 @@ namespace springproof::bench {
 namespace {
 
 nlohmann::json to_json(const BenchRow& row) {
-  nlohmann::json j = {{"subject", row.subject},
-                      {"what", row.what},
-                      {"size", row.size},
-                      {"unit", row.unit},
-                      {"ok", row.ok},
-                      {"note", row.note},
-                      {"outcome", to_string(outcome(row))}};
+  nlohmann::json j = {{"subject", row.subject}, {"what", row.what}, {"size", row.size},       {"unit", row.unit},
+                      {"ok", row.ok},           {"note", row.note}, {"outcome", outcome(row)}};
   if (row.ok) j["value"] = row.value;
   if (row.ok && !row.baseline.empty()) j["baseline"] = {{"name", row.baseline}, {"value", row.baseline_value}};
   if (row.ok) j["judged"] = row.judged();
@@ -61,14 +56,20 @@ std::string machine_text(const Machine& machine) {
   return out;
 }
 
+/// "at least 5", "at most 1.35"; empty without a target.
+std::string target_text(const Target& target) {
+  if (target.sense == Sense::none) return "";
+  return fmt::format("{} {:g}", target.sense == Sense::at_least ? "at least" : "at most", target.limit);
+}
+
 std::string line(const BenchRow& row, std::size_t width) {
   const std::string head = fmt::format("{:<{}} {:<18}", row.what, width, row.size);
   if (!row.ok) return fmt::format("{} NO RESULT: {}\n", head, row.note);
   const bool compared = !row.baseline.empty();
   std::string out = fmt::format("{} {:>9} {:<24} {:>9} {:<26} {:>8} {:<14} {:<7}", head, number(row.value), row.unit,
                                 compared ? number(row.baseline_value) : "", row.baseline,
-                                compared ? fmt::format("{:.2f}x", row.judged()) : "", to_string(row.target),
-                                outcome(row) == Outcome::missed ? "MISSED" : to_string(outcome(row)));
+                                compared ? fmt::format("{:.2f}x", row.judged()) : "", target_text(row.target),
+                                outcome(row) == "missed" ? "MISSED" : outcome(row));
   if (row.usage)
     out += fmt::format(" {:>5.0f} {:>6} {:>6}", row.usage->bytes_per_node, percent(row.usage->bandwidth_share),
                        percent(row.usage->arithmetic_share));
@@ -83,39 +84,15 @@ double BenchRow::judged() const {
   return target.sense == Sense::at_most ? value / baseline_value : baseline_value / value;
 }
 
-Outcome outcome(const BenchRow& row) {
-  if (!row.ok || !std::isfinite(row.judged())) return Outcome::no_result;
-  switch (row.target.sense) {
-    case Sense::at_least:
-      return row.judged() >= row.target.limit ? Outcome::met : Outcome::missed;
-    case Sense::at_most:
-      return row.judged() <= row.target.limit ? Outcome::met : Outcome::missed;
-    default:
-      return Outcome::information;
-  }
-}
-
-std::string to_string(Outcome outcome) {
-  switch (outcome) {
-    case Outcome::met:
-      return "met";
-    case Outcome::missed:
-      return "missed";
-    case Outcome::no_result:
-      return "no result";
-    default:
-      return "";
-  }
-}
-
-std::string to_string(const Target& target) {
-  if (target.sense == Sense::none) return "";
-  return fmt::format("{} {:g}", target.sense == Sense::at_least ? "at least" : "at most", target.limit);
+std::string outcome(const BenchRow& row) {
+  const auto [sense, limit] = row.target;
+  if (!row.ok || !std::isfinite(row.judged())) return "no result";
+  if (sense == Sense::none) return "";
+  return (sense == Sense::at_least ? row.judged() >= limit : row.judged() <= limit) ? "met" : "missed";
 }
 
 bool complete(const Findings& findings) {
-  return std::none_of(findings.rows.begin(), findings.rows.end(),
-                      [](const BenchRow& row) { return outcome(row) == Outcome::no_result; });
+  return std::ranges::none_of(findings.rows, [](const BenchRow& row) { return outcome(row) == "no result"; });
 }
 
 nlohmann::json to_json(const Findings& findings) {
@@ -138,8 +115,7 @@ std::string table_text(const Machine& machine, const Findings& findings) {
     out += line(row, width);
   }
   int met = 0, judged = 0;
-  for (const BenchRow& row : findings.rows)
-    met += outcome(row) == Outcome::met, judged += row.target.sense != Sense::none;
+  for (const BenchRow& row : findings.rows) met += outcome(row) == "met", judged += row.target.sense != Sense::none;
   if (judged > 0) out += fmt::format("\n{} of {} targets met\n", met, judged);
   for (const std::string& remark : findings.remarks) out += remark + "\n";
   return out;

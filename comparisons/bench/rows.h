@@ -44,12 +44,8 @@ struct BenchRow {
   double judged() const;
 };
 
-enum class Outcome { met, missed, information, no_result };
-Outcome outcome(const BenchRow& row);
-std::string to_string(Outcome outcome);
-
-/// "at least 5", "at most 1.35"; empty without a target.
-std::string to_string(const Target& target);
+/// "met", "missed", "no result"; without a target "".
+std::string outcome(const BenchRow& row);
 
 struct Findings {
   std::vector<BenchRow> rows;

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "comparisons/bench/baselines.h"
@@ -79,59 +81,71 @@ Equilibrium solve(const Problem& p, LinearSolver solver = LinearSolver::automati
   return e;
 }
 
-Json answer(const Equilibrium& e) {
-  return {{"iterations", e.iterations},
-          {"seconds", e.seconds},
-          {"memory_MiB", e.memory_MiB},
-          {"unknowns", e.unknowns},
-          {"solver", e.solver}};
-}
+/// What is told of a solve.
+struct Answer {
+  int iterations = 0;
+  double seconds = 0, memory_MiB = 0;
+  long unknowns = 0;
+  std::string solver;
 
-/// Runs `work` in a child process and passes its result to `rows`, which adds the rows; on failure adds the first row
-/// without a result.
-template <class Work, class Rows>
-void measure(Findings& findings, const BenchRow& first, const Work& work, const Rows& rows) {
-  to_stderr("statics: {}, {} ...\n", first.what, first.size);
+  double us_per_unknown() const { return 1e6 * seconds / double(unknowns); }
+};
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Answer, iterations, seconds, memory_MiB, unknowns, solver)
+
+Answer answer(const Equilibrium& e) { return {e.iterations, e.seconds, e.memory_MiB, e.unknowns, e.solver}; }
+
+/// What `work` returns in a child process; on failure nothing, and `row` is added without a result.
+template <class Work>
+std::optional<Json> measured(Findings& findings, BenchRow row, const Work& work) {
+  to_stderr("statics: {}, {} ...\n", row.what, row.size);
   try {
-    rows(in_child(work));
+    return in_child(work);
   } catch (const Interrupted&) {
     throw;
   } catch (const std::exception& e) {
-    BenchRow row = first;
     row.ok = false;
     row.note = e.what();
     findings.rows.push_back(row);
+    return {};
   }
+}
+
+std::optional<Answer> solved(Findings& findings, const BenchRow& row, const std::function<Problem()>& problem) {
+  const auto a = measured(findings, row, [&] { return answer(solve(problem())); });
+  return a ? std::optional(a->get<Answer>()) : std::nullopt;
 }
 
 BenchRow iterations_row(const std::string& what, const std::string& size, double limit) {
   return {"statics", what, size, "iterations to 1e-8", 0, "", 0, at_most(limit)};
 }
 
+void add(Findings& findings, BenchRow row, double value, const std::string& note, double baseline_value = 0) {
+  row.value = value;
+  row.baseline_value = baseline_value;
+  row.note = note;
+  findings.rows.push_back(row);
+}
+
 /// Target for the iterations of a block, by Poisson's ratio.
 double iteration_limit(double nu) { return nu <= 0.4 ? 13 : nu <= 0.499 ? 16 : 25; }
 
-void blocks(const BenchOptions& options, Findings& findings) {
+void blocks(const Options& options, Findings& findings) {
   const std::vector<int> sizes = options.quick ? std::vector{12} : std::vector{20, 40, 63};
   const std::vector<double> ratios =
       options.quick ? std::vector{0.25, 0.499} : std::vector{0.0, 0.25, 0.4, 0.45, 0.49, 0.499, 0.4999};
   for (const int n : sizes) {
     double quarter = 0;
+    const std::string size = fmt::format("{}^3", n);
     for (const double nu : ratios) {
-      BenchRow row = iterations_row(fmt::format("block, nu = {:g}", nu), fmt::format("{}^3", n), iteration_limit(nu));
-      measure(
-          findings, row, [&] { return answer(solve(cube(n, nu))); },
-          [&](const Json& a) {
-            row.value = a.at("iterations");
-            const double seconds = a.at("seconds");
-            row.note = fmt::format("{}, {:.3g} CPU s, {:.3g} us per unknown", a.at("solver").get<std::string>(),
-                                   seconds, 1e6 * seconds / a.at("unknowns").get<double>());
-            findings.rows.push_back(row);
-            if (nu == 0.25) quarter = seconds;
-            if (nu == 0.499 && quarter > 0)
-              findings.rows.push_back({"statics", "nu = 0.499 over nu = 0.25", row.size, "CPU s", seconds, "nu = 0.25",
-                                       quarter, at_most(4)});
-          });
+      const BenchRow row = iterations_row(fmt::format("block, nu = {:g}", nu), size, iteration_limit(nu));
+      const auto a = solved(findings, row, [&] { return cube(n, nu); });
+      if (!a) continue;
+      add(findings, row, a->iterations,
+          fmt::format("{}, {:.3g} CPU s, {:.3g} us per unknown", a->solver, a->seconds, a->us_per_unknown()));
+      if (nu == 0.25) quarter = a->seconds;
+      if (nu == 0.499 && quarter > 0)
+        findings.rows.push_back(
+            {"statics", "nu = 0.499 over nu = 0.25", size, "CPU s", a->seconds, "nu = 0.25", quarter, at_most(4)});
     }
   }
 }
@@ -141,153 +155,107 @@ void dispersion_blocks(int n, double gain, Findings& findings) {
   for (const double nu : {0.25, 0.499}) {
     const BenchRow row =
         iterations_row(fmt::format("emsm block, nu = {:g}", nu), fmt::format("{}^3", n), iteration_limit(nu));
-    const auto work = [&] {
+    const auto a = measured(findings, row, [&] {
       const Problem p = cube(n, nu, "emsm");
-      return Json{{"chosen", answer(solve(p))}, {"displacements", answer(solve(p, LinearSolver::multigrid))}};
-    };
-    measure(findings, row, work, [&](const Json& a) {
-      const double chosen = a.at("chosen").at("seconds"), displacements = a.at("displacements").at("seconds");
-      BenchRow found = row;
-      found.value = a.at("chosen").at("iterations");
-      found.note = fmt::format("{}, {:.3g} CPU s", a.at("chosen").at("solver").get<std::string>(), chosen);
-      findings.rows.push_back(found);
-      if (nu == 0.25) return;
-      findings.rows.push_back({"statics",
-                               row.what + ", over displacements alone",
-                               row.size,
-                               "CPU s",
-                               chosen,
-                               "CG + network multigrid",
-                               displacements,
-                               at_least(gain),
-                               {},
-                               fmt::format("{} iterations", a.at("displacements").at("iterations").get<int>())});
+      return Json{answer(solve(p)), answer(solve(p, LinearSolver::multigrid))};
     });
+    if (!a) continue;
+    const Answer chosen = a->at(0), displacements = a->at(1);
+    add(findings, row, chosen.iterations, fmt::format("{}, {:.3g} CPU s", chosen.solver, chosen.seconds));
+    if (nu == 0.25) continue;
+    add(findings,
+        {"statics", row.what + ", over displacements alone", row.size, "CPU s", 0, "CG + network multigrid", 0,
+         at_least(gain)},
+        chosen.seconds, fmt::format("{} iterations", displacements.iterations), displacements.seconds);
   }
 }
 
-void rabbits(const BenchOptions& options, Findings& findings) {
+void rabbits(const Options& options, Findings& findings) {
   for (const int voxels : options.quick ? std::vector{1500} : std::vector{5000, 50000, 500000}) {
-    BenchRow row = iterations_row("rabbit with thin ears, nu = 0.25", fmt::format("{} voxels", voxels), 40);
-    measure(
-        findings, row, [&] { return answer(solve(Rabbit(voxels).whole("hybmss", 0.25))); },
-        [&](const Json& a) {
-          row.value = a.at("iterations");
-          row.note = fmt::format("{}, {:.3g} CPU s", a.at("solver").get<std::string>(), a.at("seconds").get<double>());
-          findings.rows.push_back(row);
-        });
+    const BenchRow row = iterations_row("rabbit with thin ears, nu = 0.25", fmt::format("{} voxels", voxels), 40);
+    if (const auto a = solved(findings, row, [&] { return Rabbit(voxels).whole("hybmss", 0.25); }))
+      add(findings, row, a->iterations, fmt::format("{}, {:.3g} CPU s", a->solver, a->seconds));
   }
 }
 
 /// Cut cells against the whole cubes of the same lattice, whose body has fewer nodes.
 void cut_rabbits(int voxels, Findings& findings) {
   const std::vector<double> ratios = {0.25, 0.499};
-  const BenchRow first{"statics",
-                       "rabbit in cut cells over whole cubes",
-                       fmt::format("{} voxels", voxels),
-                       "iterations to 1e-8",
-                       0,
-                       "whole cubes",
-                       0,
-                       at_most(2)};
-  const auto work = [&] {
+  BenchRow first = iterations_row("rabbit in cut cells over whole cubes", fmt::format("{} voxels", voxels), 2);
+  first.baseline = "whole cubes";
+  const auto answers = measured(findings, first, [&] {
     const Rabbit rabbit(voxels);
-    Json answers;
+    Json all;
     for (const double nu : ratios)
-      answers.push_back({{"cut", answer(solve(rabbit.cut("hybmss_bt", nu)))},
-                         {"whole", answer(solve(rabbit.whole("hybmss_bt", nu)))}});
-    return answers;
-  };
-  measure(findings, first, work, [&](const Json& answers) {
-    for (std::size_t i = 0; i < ratios.size(); ++i) {
-      const Json &cut = answers[i].at("cut"), &whole = answers[i].at("whole");
-      BenchRow row = first;
-      row.what += fmt::format(", nu = {:g}", ratios[i]);
-      row.value = cut.at("iterations");
-      row.baseline_value = whole.at("iterations");
-      row.note = cut.at("solver").get<std::string>();
-      findings.rows.push_back(row);
-      row.unit = "CPU us per unknown";
-      row.value = 1e6 * cut.at("seconds").get<double>() / cut.at("unknowns").get<double>();
-      row.baseline_value = 1e6 * whole.at("seconds").get<double>() / whole.at("unknowns").get<double>();
-      row.target = {};
-      findings.rows.push_back(row);
-    }
+      all.push_back({answer(solve(rabbit.cut("hybmss_bt", nu))), answer(solve(rabbit.whole("hybmss_bt", nu)))});
+    return all;
   });
+  for (std::size_t i = 0; answers && i < ratios.size(); ++i) {
+    const auto [cut, whole] = answers->at(i).get<std::array<Answer, 2>>();
+    BenchRow row = first;
+    row.what += fmt::format(", nu = {:g}", ratios[i]);
+    add(findings, row, cut.iterations, cut.solver, whole.iterations);
+    row.unit = "CPU us per unknown";
+    row.target = {};
+    add(findings, row, cut.us_per_unknown(), cut.solver, whole.us_per_unknown());
+  }
 }
 
 /// Our solver and GAMG on the same problem in the same process.
-template <class Make>
-void against_gamg(const std::string& what, const std::string& size, double limit, const Make& make,
+void against_gamg(const std::string& what, const std::string& size, double limit, const std::function<Problem()>& make,
                   Findings& findings) {
   if (!has_gamg()) return;
-  BenchRow row{"statics", what, size, "CPU s", 0, "PETSc CG + GAMG", 0, at_least(limit)};
-  const auto work = [&] {
+  const BenchRow row{"statics", what, size, "CPU s", 0, "PETSc CG + GAMG", 0, at_least(limit)};
+  const auto a = measured(findings, row, [&] {
     const Problem p = make();
     const Equilibrium ours = solve(p);
     const GamgResult gamg = solve_gamg(p.model, p.conditions, tolerance, ours.displacement);
     if (!gamg.converged)
       throw std::runtime_error(fmt::format("GAMG did not converge in {} iterations", gamg.iterations));
     return Json{{"ours", answer(ours)},
-                {"setup", gamg.setup_seconds},
-                {"solve", gamg.solve_seconds},
-                {"iterations", gamg.iterations},
-                {"difference", gamg.difference}};
-  };
-  measure(findings, row, work, [&](const Json& a) {
-    row.value = a.at("ours").at("seconds");
-    row.baseline_value = a.at("setup").get<double>() + a.at("solve").get<double>();
-    row.note = fmt::format(
-        "{}, {} iterations, everything counted; GAMG {} iterations, {:.3g} s set-up, {:.3g} s solving, its assembly "
-        "not counted; displacements differ by {:.1e}",
-        a.at("ours").at("solver").get<std::string>(), a.at("ours").at("iterations").get<int>(),
-        a.at("iterations").get<int>(), a.at("setup").get<double>(), a.at("solve").get<double>(),
-        a.at("difference").get<double>());
-    findings.rows.push_back(row);
+                {"seconds", gamg.setup_seconds + gamg.solve_seconds},
+                {"note", fmt::format("{}, {} iterations, everything counted; GAMG {} iterations, {:.3g} s set-up, "
+                                     "{:.3g} s solving, its assembly not counted; displacements differ by {:.1e}",
+                                     ours.solver, ours.iterations, gamg.iterations, gamg.setup_seconds,
+                                     gamg.solve_seconds, gamg.difference)}};
   });
+  if (a) add(findings, row, a->at("ours").at("seconds"), a->at("note"), a->at("seconds"));
 }
 
 void against_dynamics(int n, Findings& findings) {
-  BenchRow row{"statics",
-               "block, nu = 0.25, over damped dynamics",
-               fmt::format("{}^3", n),
-               "CPU s",
-               0,
-               "optimally damped dynamics",
-               0,
-               at_least(15)};
-  const auto work = [&] {
+  const BenchRow row{"statics",
+                     "block, nu = 0.25, over damped dynamics",
+                     fmt::format("{}^3", n),
+                     "CPU s",
+                     0,
+                     "optimally damped dynamics",
+                     0,
+                     at_least(15)};
+  const auto a = measured(findings, row, [&] {
     const Problem p = cube(n, 0.25);
     const Equilibrium ours = solve(p);
-    const Relaxation r = relax(p.model, p.conditions, tolerance);
-    if (!r.at_rest) throw std::runtime_error(r.message);
-    return Json{{"ours", answer(ours)}, {"steps", r.steps}, {"seconds", r.seconds}};
-  };
-  measure(findings, row, work, [&](const Json& a) {
-    row.value = a.at("ours").at("seconds");
-    row.baseline_value = a.at("seconds");
-    row.note = fmt::format("{} steps of run_dynamics", a.at("steps").get<long>());
-    findings.rows.push_back(row);
+    const DynamicsResult r = relax(p.model, p.conditions, tolerance);
+    if (!r.state.ok) throw std::runtime_error(r.state.message);
+    return Json{{"ours", ours.seconds}, {"steps", r.steps}, {"seconds", r.state.seconds}};
   });
+  if (a)
+    add(findings, row, a->at("ours"), fmt::format("{} steps of run_dynamics", a->at("steps").get<long>()),
+        a->at("seconds"));
 }
 
 void large(int n, Findings& findings) {
   BenchRow row{"statics", "large block, nu = 0.25", fmt::format("{}^3", n), "CPU s", 0, "", 0, at_most(10)};
-  measure(
-      findings, row, [&] { return answer(solve(cube(n, 0.25))); },
-      [&](const Json& a) {
-        row.value = a.at("seconds");
-        row.note = fmt::format("{}, {} iterations, {} unknowns", a.at("solver").get<std::string>(),
-                               a.at("iterations").get<int>(), a.at("unknowns").get<long>());
-        findings.rows.push_back(row);
-        findings.rows.push_back({"statics", row.what, row.size, "GiB, peak of the process with its model",
-                                 a.at("memory_MiB").get<double>() / 1024, "", 0, at_most(2)});
-      });
+  const auto a = solved(findings, row, [&] { return cube(n, 0.25); });
+  if (!a) return;
+  add(findings, row, a->seconds, fmt::format("{}, {} iterations, {} unknowns", a->solver, a->iterations, a->unknowns));
+  row.unit = "GiB, peak of the process with its model";
+  row.target = at_most(2);
+  add(findings, row, a->memory_MiB / 1024, "");
 }
 
 }  // namespace
 
-void bench_statics(const BenchOptions& options, Findings& findings) {
+void bench_statics(const Options& options, Findings& findings) {
   const bool quick = options.quick;
   const int n = quick ? 10 : 40, nodes = quick ? 2000 : 100000;
   if (!has_gamg()) findings.remarks.push_back("PETSc was not there when this was built: no rows against CG + GAMG");

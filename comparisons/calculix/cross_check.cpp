@@ -31,11 +31,8 @@ ReferenceValue largest(const ReferenceField& field) {
 /// A row of two displacement fields, of the largest values and uncertainties; it differs by the largest of the
 /// differences.
 SecondOpinion field_row(const std::string& measure, const ReferenceField& calculix, const ReferenceField& ours) {
-  SecondOpinion row = second_opinion(measure, largest(calculix), largest(ours));
-  row.unit = std::string(1, 'm');
-  row.difference = (calculix.displacement - ours.displacement).rowwise().norm().maxCoeff();
-  row.agrees = row.difference <= row.calculix.uncertainty + row.ours.uncertainty;
-  return row;
+  return second_opinion(measure, largest(calculix), largest(ours),
+                        (calculix.displacement - ours.displacement).rowwise().norm().maxCoeff());
 }
 
 /// The field of the finest grid, certain but for round-off.
@@ -64,11 +61,8 @@ SecondOpinion history_row(const Opinion& calculix, const Opinion& ours) {
     const double size = size_of(o.history);
     return ReferenceValue{size, o.uncertainty * size, {}, ""};
   };
-  SecondOpinion row = second_opinion(history_measure, value(calculix), value(ours));
-  row.unit = std::string(1, 'm');
-  row.difference = history_error(calculix.history, ours.history) * row.ours.value;
-  row.agrees = row.difference <= row.calculix.uncertainty + row.ours.uncertainty;
-  return row;
+  return second_opinion(history_measure, value(calculix), value(ours),
+                        history_error(calculix.history, ours.history) * size_of(ours.history));
 }
 
 std::vector<SecondOpinion> compare_opinions(const Question& q, const Opinion& calculix, const Opinion& ours) {
@@ -96,7 +90,7 @@ void print_table(const std::vector<SecondOpinion>& rows) {
       to_stdout("{:<26} {:>4} {:>13.6g} {:>9.1e} {:>13.6g} {:>9.1e} {:>10.1e}  {}\n", r.measure, r.unit,
                 r.calculix.value, r.calculix.uncertainty, r.ours.value, r.ours.uncertainty, r.difference,
                 r.agrees ? "yes" : "NO");
-  if (const auto zeros = std::count_if(rows.begin(), rows.end(), vanishes))
+  if (const auto zeros = std::ranges::count_if(rows, vanishes))
     to_stdout("and {} component{} that both find to be zero\n", zeros, zeros == 1 ? "" : "s");
 }
 
@@ -136,7 +130,7 @@ int check_material(const Question& q) {
   const std::vector<SecondOpinion> rows = compare_opinions(q, *calculix, *ours);
   print_table(rows);
   std::fflush(stdout);
-  return static_cast<int>(std::count_if(rows.begin(), rows.end(), [](const auto& r) { return !r.agrees; }));
+  return static_cast<int>(std::ranges::count_if(rows, [](const auto& r) { return !r.agrees; }));
 }
 
 bool programs_are_there() {
@@ -148,10 +142,12 @@ bool programs_are_there() {
 
 }  // namespace
 
-SecondOpinion second_opinion(const std::string& measure, const ReferenceValue& calculix, const ReferenceValue& ours) {
-  const double difference = calculix.value - ours.value;
-  return {measure, unit_of(measure), calculix,
-          ours,    difference,       std::abs(difference) <= calculix.uncertainty + ours.uncertainty};
+SecondOpinion second_opinion(const std::string& measure, const ReferenceValue& calculix, const ReferenceValue& ours,
+                             std::optional<double> distance) {
+  const double difference = distance.value_or(calculix.value - ours.value);
+  return {measure,    distance ? "m" : unit_of(measure),
+          calculix,   ours,
+          difference, std::abs(difference) <= calculix.uncertainty + ours.uncertainty};
 }
 
 Experiment at_wanted(const Experiment& experiment, std::optional<double> setting) {
@@ -170,7 +166,7 @@ int cross_check(const std::filesystem::path& file, const CrossCheckOptions& opti
   if (options.poisson_ratio || experiment.listed.materials.size() == 1)
     experiment = at_wanted(experiment, options.poisson_ratio);
   require_one_listed(experiment);
-  if (options.modes == 0) calculix::require_counterpart(experiment);
+  if (options.modes == 0) calculix::counterpart(experiment);
   if (options.modes == 0 && moves_in_time(experiment)) {
     calculix::require_motion_counterpart(experiment);
     if (options.cells[0] > 0)

@@ -28,7 +28,9 @@ struct SecondOpinion {
 };
 
 /// The verdict from two values with uncertainty.
-SecondOpinion second_opinion(const std::string& measure, const ReferenceValue& calculix, const ReferenceValue& ours);
+/// @param distance of two displacements [m], in place of the difference of their sizes
+SecondOpinion second_opinion(const std::string& measure, const ReferenceValue& calculix, const ReferenceValue& ours,
+                             std::optional<double> distance = {});
 
 /// The case at one of its settings alone, or at its first.
 /// @throws InputError listing those of the case.

@@ -19,7 +19,7 @@ namespace {
 constexpr double largest_turn_per_step = 20 * std::numbers::pi / 180;
 
 const QuadraticPatch& patch_of(const QuadraticMesh& mesh, const std::string& name) {
-  const auto at = std::find_if(mesh.patches.begin(), mesh.patches.end(), [&](const auto& p) { return p.name == name; });
+  const auto at = std::ranges::find_if(mesh.patches, [&](const auto& p) { return p.name == name; });
   if (at != mesh.patches.end()) return *at;
   std::vector<std::string> names;
   for (const QuadraticPatch& p : mesh.patches) names.push_back(p.name);
@@ -104,6 +104,16 @@ constexpr Counterpart counterparts[] = {
     {"neo_hooke_isochoric", true, "W = C10 (J^(-2/3) tr C - 3) + (J - 1)^2 / D1", write_neo_hooke},
     {"st_venant_kirchhoff", true, "S = 2 mu E + lambda tr E I (*ELASTIC with NLGEOM in CalculiX)", write_elastic}};
 
+Eigen::VectorXd nodal_masses(const Deck& deck) {
+  Eigen::VectorXd masses = Eigen::VectorXd::Zero(deck.mesh.nodes.rows());
+  for (const Section& section : sections_of(deck)) {
+    QuadraticMesh part{deck.mesh.nodes, {}, {}};
+    for (const int e : section.elements) part.elements.push_back(deck.mesh.elements[e]);
+    masses += section.material.density * nodal_volumes(section.elements.empty() ? deck.mesh : part);
+  }
+  return masses;
+}
+
 }  // namespace
 
 void require_motion_counterpart(const Experiment& e) {
@@ -134,24 +144,8 @@ const char* element_of(const Experiment& experiment, const IsotropicMaterial& ma
   return needs_reduced_integration(experiment, material) ? "C3D20R" : "C3D20";
 }
 
-void require_counterpart(const Experiment& experiment) { counterpart(experiment); }
-
-namespace {
-
-Eigen::VectorXd nodal_masses(const Deck& deck) {
-  Eigen::VectorXd masses = Eigen::VectorXd::Zero(deck.mesh.nodes.rows());
-  for (const Section& section : sections_of(deck)) {
-    QuadraticMesh part{deck.mesh.nodes, {}, {}};
-    for (const int e : section.elements) part.elements.push_back(deck.mesh.elements[e]);
-    masses += section.material.density * nodal_volumes(section.elements.empty() ? deck.mesh : part);
-  }
-  return masses;
-}
-
-}  // namespace
-
 Deck make_deck(const Experiment& experiment, const IsotropicMaterial& material, const Mesh& mesh, DeckTask task) {
-  if (task.modes == 0) require_counterpart(experiment);
+  if (task.modes == 0) counterpart(experiment);
   Deck deck{experiment, material, mesh, quadratic(mesh), {}, {}, {}, Vec3::Zero(), steps_for(experiment), task, {}};
   check_labels(experiment, deck.mesh);
   deck.element = element_of(experiment, material, mesh);
@@ -173,11 +167,14 @@ Deck make_deck(const Experiment& experiment, const IsotropicMaterial& material, 
 NodalVectors external_loads(const Deck& deck) { return deck.forces + nodal_masses(deck) * deck.gravity.transpose(); }
 
 const Counterpart& counterpart(const Experiment& experiment) {
-  for (const Counterpart& c : counterparts)
+  std::vector<std::string> there;
+  for (const Counterpart& c : counterparts) {
     if (experiment.kinematics == c.kinematics) return c;
-  throw InputError(SourceLocation{experiment.file.string(), 0, 0},
-                   fmt::format("kinematics: CalculiX has no \"{}\" (there: {})", experiment.kinematics,
-                               kinematics_with_counterpart()));
+    there.emplace_back(c.kinematics);
+  }
+  throw InputError(
+      SourceLocation{experiment.file.string(), 0, 0},
+      fmt::format("kinematics: CalculiX has no \"{}\" (there: {})", experiment.kinematics, fmt::join(there, ", ")));
 }
 
 std::string label(const std::string& name) {
@@ -196,12 +193,6 @@ std::vector<Section> sections_of(const Deck& deck) {
     sections[deck.linear.materials[e]].elements.push_back(static_cast<int>(e));
   std::erase_if(sections, [](const Section& s) { return s.elements.empty(); });
   return sections;
-}
-
-std::string kinematics_with_counterpart() {
-  std::vector<std::string> names;
-  for (const Counterpart& c : counterparts) names.emplace_back(c.kinematics);
-  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 }  // namespace springproof::calculix

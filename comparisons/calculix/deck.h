@@ -49,17 +49,11 @@ bool needs_reduced_integration(const Experiment& experiment, const IsotropicMate
 /// "C3D20", "C3D20R" or "C3D10" of a case on a mesh.
 const char* element_of(const Experiment& experiment, const IsotropicMaterial& material, const Mesh& mesh);
 
-/// Kinematics that CalculiX supports: "linear, neo_hooke_isochoric, st_venant_kirchhoff".
-std::string kinematics_with_counterpart();
-
-/// @throws InputError if the case's law has no counterpart, naming those that have.
-void require_counterpart(const Experiment& experiment);
-
 /// @throws InputError naming what of a motion has no counterpart, with its place in the file.
 void require_motion_counterpart(const Experiment& experiment);
 
 /// @param mesh with Mesh::materials where the case has regions, each of which is a section of its own
-/// @throws InputError as require_counterpart; for an unknown patch, a point force outside the body, two patches of the
+/// @throws InputError as counterpart(); for an unknown patch, a point force outside the body, two patches of the
 ///   same name once written as a set.
 Deck make_deck(const Experiment& experiment, const IsotropicMaterial& material, const Mesh& mesh, DeckTask task = {});
 
@@ -80,7 +74,7 @@ struct Counterpart {
 };
 
 /// That of a case.
-/// @throws InputError as require_counterpart()
+/// @throws InputError if its law has none, naming those that have
 const Counterpart& counterpart(const Experiment& experiment);
 
 /// "z_max" -> "Z_MAX": a label that CalculiX and Abaqus accept and print unchanged.

@@ -145,7 +145,8 @@ std::optional<Opinion> calculix_equilibrium(const Question& q, Status& status) {
   std::vector<Answer> answers;
   Noise noise;
   for (int g = 0; g < 3; ++g) {
-    const calculix::Deck deck = q.deck(g);
+    const calculix::Deck deck =
+        calculix::make_deck(q.experiment(), q.material, *q.meshes[g], {.modes = q.modes, .steps = 0});
     const auto s = solved(q, deck, fmt::format("CalculiX {} {}", deck.element, q.grids[g]), status);
     if (!s) return {};
     answers.push_back(calculix_answer(q, deck, *s));
@@ -219,33 +220,32 @@ std::optional<Opinion> calculix_motion(const Question& q, Status& status) {
   return opinion(q, std::move(solutions), status);
 }
 
-std::optional<Opinion> our_motion(const Question& q, Status& status) try {
-  std::vector<fem::Solution> solutions = solve_each(motion_request(q.prepared, q.material));
+/// Our solutions, which are said; nothing where one has failed.
+std::optional<std::vector<fem::Solution>> solved(const Question& q, const fem::Request& request, Status& status) try {
+  std::vector<fem::Solution> solutions = solve_each(request);
   for (const fem::Solution& s : solutions) {
-    status.print(fmt::format("  FEM {} {} cells, {} steps: {}", s.form, s.cells, s.grid.steps,
-                             s.ok ? fmt::format("{:.1f} s", s.seconds) : s.message));
+    const std::string grid = q.moves()         ? fmt::format("{} cells, {} steps", s.cells, s.grid.steps)
+                             : q.same_meshes() ? q.grids[s.grid.mesh]
+                                               : cells_text(s.grid.cells, " x ");
+    status.print(fmt::format("  FEM {} {}: {}", s.form, grid, s.ok ? fmt::format("{:.1f} s", s.seconds) : s.message));
     if (!s.ok) return {};
   }
-  return opinion(q, std::move(solutions), status);
+  return solutions;
 } catch (const std::runtime_error& e) {
   if (!children_interrupted()) status.print(fmt::format("  FEM: {}", e.what()));
   return {};
 }
 
+std::optional<Opinion> our_motion(const Question& q, Status& status) {
+  auto solutions = solved(q, motion_request(q.prepared, q.material), status);
+  return solutions ? opinion(q, std::move(*solutions), status) : std::nullopt;
+}
+
 std::optional<Opinion> our_equilibrium(const Question& q, Status& status) {
+  const auto solutions = solved(q, request_of(q), status);
+  if (!solutions) return {};
   std::vector<Answer> answers;
-  std::vector<fem::Solution> solutions;
-  try {
-    solutions = solve_each(request_of(q));
-  } catch (const std::runtime_error& e) {
-    if (!children_interrupted()) status.print(fmt::format("  FEM: {}", e.what()));
-    return {};
-  }
-  for (const fem::Solution& s : solutions) {
-    status.print(fmt::format("  FEM {} {}: {}", s.form,
-                             q.same_meshes() ? q.grids[s.grid.mesh] : cells_text(s.grid.cells, " x "),
-                             s.ok ? fmt::format("{:.1f} s", s.seconds) : s.message));
-    if (!s.ok) return {};
+  for (const fem::Solution& s : *solutions) {
     if (q.modes > 0) {
       answers.push_back({values_of(s.frequencies, q.modes), {}});
       if (static_cast<int>(answers.back().values.size()) == q.modes) continue;
@@ -284,27 +284,31 @@ void require_frequencies(const Question& q) {
 
 }  // namespace
 
+Mesh mesh_of_cells(const Experiment& e, const std::filesystem::path& geo, const Cells& cells) {
+  Mesh mesh = mesh_geo(geo, e.body.size, cells, {}, volumes_of(e.regions));
+  mark_regions(e.regions, 1, mesh);
+  select_whole_facets(e.patches, mesh);
+  return mesh;
+}
+
 Question question(const PreparedCase& prepared, const IsotropicMaterial& material, const CrossCheckOptions& options) {
   const Experiment& e = prepared.experiment;
   Question q{prepared, material, options.modes, {}, prepared.body.tetrahedra, {}, {}, options.time_limit};
   if (q.same_meshes()) {
     for (const auto& mesh : q.meshes) q.grids.push_back(fmt::format("{} tetrahedra", mesh->tetrahedra.size()));
     std::tie(q.points, q.weights) = middles(*q.meshes.front());
-    if (q.modes > 0) require_frequencies(q);
-    return q;
+  } else {
+    const Cells finest =
+        q.moves() ? motion_request(prepared, material).grids[2].cells : finest_cells(prepared, material, options.cells);
+    for (const Cells& cells : three_grids(finest)) {
+      Mesh mesh = mesh_of_cells(e, prepared.body.geo, cells);
+      if (mesh.grid) grade(e.reference.grading, mesh);
+      q.grids.push_back(cells_text(cells, " x "));
+      q.meshes.push_back(std::make_shared<const Mesh>(std::move(mesh)));
+    }
+    q.points = q.meshes.front()->nodes;
+    q.weights = nodal_volumes(*q.meshes.front());
   }
-  const Cells finest =
-      q.moves() ? motion_request(prepared, material).grids[2].cells : finest_cells(prepared, material, options.cells);
-  for (const Cells& cells : three_grids(finest)) {
-    Mesh mesh = mesh_geo(prepared.body.geo, e.body.size, cells, {}, volumes_of(e.regions));
-    mark_regions(e.regions, 1, mesh);
-    select_whole_facets(e.patches, mesh);
-    if (mesh.grid) grade(e.reference.grading, mesh);
-    q.grids.push_back(cells_text(cells, " x "));
-    q.meshes.push_back(std::make_shared<const Mesh>(std::move(mesh)));
-  }
-  q.points = q.meshes.front()->nodes;
-  q.weights = nodal_volumes(*q.meshes.front());
   if (q.modes > 0) require_frequencies(q);
   return q;
 }

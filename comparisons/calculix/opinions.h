@@ -39,9 +39,6 @@ struct Question {
     return same_meshes() && modes == 0 && !moves() && experiment().kinematics == "linear" &&
            !calculix::needs_reduced_integration(experiment(), material);
   }
-  calculix::Deck deck(int grid) const {
-    return calculix::make_deck(experiment(), material, *meshes[grid], {.modes = modes, .steps = 0});
-  }
 };
 
 /// Values extrapolated from the three grids.
@@ -53,6 +50,9 @@ struct Opinion {
   HistoryRecord history;   ///< of a motion: the displacements of the probes
   double uncertainty = 0;  ///< of these, relative to their norm over time
 };
+
+/// The hexahedra of a case, with its regions and patches.
+Mesh mesh_of_cells(const Experiment& experiment, const std::filesystem::path& geo, const Cells& cells);
 
 /// @param prepared kept by reference
 /// @throws InputError for grids that cannot be halved twice, and for frequencies that cannot be compared

@@ -167,7 +167,7 @@ std::vector<int> with_middles(const Cell& cell, const Edges& edges, MiddleNodes&
 }
 
 Corners4 sorted(Corners4 nodes) {
-  std::sort(nodes.begin(), nodes.end());
+  std::ranges::sort(nodes);
   return nodes;
 }
 
@@ -193,7 +193,7 @@ void add_nodes_of(const QuadraticMesh& mesh, const Side& side, std::vector<int>&
   const std::vector<int>& element = mesh.elements[side.element];
   const bool brick = element.size() == 20;
   const Corners4& corners = brick ? hexahedron_sides[side.face - 1] : tetrahedron_sides[side.face - 1];
-  const auto on_side = [&](int corner) { return std::find(corners.begin(), corners.end(), corner) != corners.end(); };
+  const auto on_side = [&](int corner) { return std::ranges::find(corners, corner) != corners.end(); };
   const auto visit = [&](const auto& edges, std::size_t first_middle) {
     for (std::size_t i = 0; i < first_middle; ++i)
       if (on_side(int(i))) nodes.push_back(element[i]);
@@ -201,6 +201,33 @@ void add_nodes_of(const QuadraticMesh& mesh, const Side& side, std::vector<int>&
       if (on_side(edges[e][0]) && on_side(edges[e][1])) nodes.push_back(element[first_middle + e]);
   };
   brick ? visit(hexahedron_edges, 8) : visit(tetrahedron_edges, 4);
+}
+
+struct PlaceInElement {
+  std::size_t element;
+  Vec3 xi;
+};
+
+std::optional<PlaceInElement> place_in_hexahedra(const Mesh& mesh, const Vec3& point) {
+  const std::optional<Location> place = locate(mesh, point);
+  if (!place) return {};
+  // The trilinear shape functions yield the reference coordinates: each is the sum over the corners of one face.
+  Vec3 xi = -Vec3::Ones();
+  for (int corner = 0; corner < 8; ++corner)
+    for (int d = 0; d < 3; ++d) xi[d] += 2 * hexahedron_corners[corner][d] * place->shape[corner];
+  return PlaceInElement{place->cell, xi};
+}
+
+/// Finds the elements of points.
+std::function<std::optional<PlaceInElement>(const Vec3&)> finder(const Mesh& mesh, double reach) {
+  if (!mesh.hexahedra.empty()) return [&mesh](const Vec3& point) { return place_in_hexahedra(mesh, point); };
+  const double size = (mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff()).norm();
+  const auto locator = std::make_shared<TetrahedronLocator>(mesh.nodes, mesh.tetrahedra);
+  return [locator, most = std::max(reach, 1e-9 * size)](const Vec3& point) -> std::optional<PlaceInElement> {
+    const TetrahedronLocator::Place place = (*locator)(point);
+    if (place.outside > most) return {};
+    return PlaceInElement{place.cell, place.weights.tail<3>()};
+  };
 }
 
 }  // namespace
@@ -221,7 +248,7 @@ QuadraticMesh quadratic(const Mesh& mesh) {
       patch.sides.push_back(sides.at(sorted(facet)));
       add_nodes_of(out, patch.sides.back(), patch.nodes);
     }
-    std::sort(patch.nodes.begin(), patch.nodes.end());
+    std::ranges::sort(patch.nodes);
     patch.nodes.erase(std::unique(patch.nodes.begin(), patch.nodes.end()), patch.nodes.end());
     out.patches.push_back(std::move(patch));
   }
@@ -262,37 +289,6 @@ Eigen::VectorXd nodal_volumes(const QuadraticMesh& mesh) {
   });
   return volumes;
 }
-
-namespace {
-
-struct PlaceInElement {
-  std::size_t element;
-  Vec3 xi;
-};
-
-std::optional<PlaceInElement> place_in_hexahedra(const Mesh& mesh, const Vec3& point) {
-  const std::optional<Location> place = locate(mesh, point);
-  if (!place) return {};
-  // The trilinear shape functions yield the reference coordinates: each is the sum over the corners of one face.
-  Vec3 xi = -Vec3::Ones();
-  for (int corner = 0; corner < 8; ++corner)
-    for (int d = 0; d < 3; ++d) xi[d] += 2 * hexahedron_corners[corner][d] * place->shape[corner];
-  return PlaceInElement{place->cell, xi};
-}
-
-/// Finds the elements of points.
-std::function<std::optional<PlaceInElement>(const Vec3&)> finder(const Mesh& mesh, double reach) {
-  if (!mesh.hexahedra.empty()) return [&mesh](const Vec3& point) { return place_in_hexahedra(mesh, point); };
-  const double size = (mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff()).norm();
-  const auto locator = std::make_shared<TetrahedronLocator>(mesh.nodes, mesh.tetrahedra);
-  return [locator, most = std::max(reach, 1e-9 * size)](const Vec3& point) -> std::optional<PlaceInElement> {
-    const TetrahedronLocator::Place place = (*locator)(point);
-    if (place.outside > most) return {};
-    return PlaceInElement{place.cell, place.weights.tail<3>()};
-  };
-}
-
-}  // namespace
 
 NodalWeights weights_at(const QuadraticMesh& mesh, const Mesh& linear, const NodalVectors& points, double reach) {
   std::vector<Eigen::Triplet<double>> entries;

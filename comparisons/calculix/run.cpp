@@ -60,8 +60,7 @@ void fill_solution(const Deck& deck, const Printed& printed, Solution& solution)
   field.displacement = printed.displacement.topRows(deck.linear.nodes.rows());
   for (const HeldComponent& h : deck.held) {
     const std::string& name = *patch_of(e.loads[h.load]);
-    auto at =
-        std::find_if(field.reactions.begin(), field.reactions.end(), [&](const auto& r) { return r.patch == name; });
+    auto at = std::ranges::find_if(field.reactions, [&](const auto& r) { return r.patch == name; });
     if (at == field.reactions.end()) at = field.reactions.insert(at, {name, Vec3::Zero(), Vec3::Zero()});
     const Vec3 force = support(h.node, h.component) * Vec3::Unit(h.component);
     const Vec3 arm = arms.row(h.node).transpose() - centroid(deck.linear, patch(deck.linear, name));
@@ -95,6 +94,32 @@ void read_blocks(std::istream& in, Eigen::Index nodes, const Into& into) {
       for (int c = 0; c < 3; ++c) (*to)(node, c) = number(word[1 + c]);
     }
   }
+}
+
+void fill_frequencies(const Deck& deck, std::istream& dat, Solution& solution) {
+  solution.frequencies = read_frequencies(dat);
+  solution.ok = static_cast<int>(solution.frequencies.size()) >= deck.task.modes;
+  if (!solution.ok) solution.message = fmt::format("ccx found {} modes", solution.frequencies.size());
+}
+
+/// A released body's first block is its equilibrium, in a step of one second.
+void fill_path(const Deck& deck, std::istream& dat, Solution& solution) {
+  const bool released = deck.experiment.dynamics->released;
+  std::vector<std::pair<double, NodalVectors>> path = read_path(dat, deck.at_probes);
+  if (released)
+    path.erase(path.begin(), std::ranges::find_if(path, [](const auto& at) { return at.first > 1 - 1e-6; }));
+  else
+    path.insert(path.begin(), {0, NodalVectors::Zero(deck.at_probes.rows(), 3)});
+  if (static_cast<int>(path.size()) != deck.task.steps + 1) {
+    solution.message = path.empty() ? "ccx printed no equilibrium to start from"
+                                    : fmt::format("ccx made {} steps of {}", path.size() - 1, deck.task.steps);
+    return;
+  }
+  for (int i = 0; i <= deck.task.steps; ++i) {
+    solution.time.push_back(deck.experiment.dynamics->duration * i / deck.task.steps);
+    solution.path.push_back(path[i].second);
+  }
+  solution.ok = true;
 }
 
 }  // namespace
@@ -153,37 +178,6 @@ std::vector<double> read_frequencies(std::istream& in) {
   }
   return frequencies;
 }
-
-namespace {
-
-void fill_frequencies(const Deck& deck, std::istream& dat, Solution& solution) {
-  solution.frequencies = read_frequencies(dat);
-  solution.ok = static_cast<int>(solution.frequencies.size()) >= deck.task.modes;
-  if (!solution.ok) solution.message = fmt::format("ccx found {} modes", solution.frequencies.size());
-}
-
-/// A released body's first block is its equilibrium, in a step of one second.
-void fill_path(const Deck& deck, std::istream& dat, Solution& solution) {
-  const bool released = deck.experiment.dynamics->released;
-  std::vector<std::pair<double, NodalVectors>> path = read_path(dat, deck.at_probes);
-  if (released)
-    path.erase(path.begin(),
-               std::find_if(path.begin(), path.end(), [](const auto& at) { return at.first > 1 - 1e-6; }));
-  else
-    path.insert(path.begin(), {0, NodalVectors::Zero(deck.at_probes.rows(), 3)});
-  if (static_cast<int>(path.size()) != deck.task.steps + 1) {
-    solution.message = path.empty() ? "ccx printed no equilibrium to start from"
-                                    : fmt::format("ccx made {} steps of {}", path.size() - 1, deck.task.steps);
-    return;
-  }
-  for (int i = 0; i <= deck.task.steps; ++i) {
-    solution.time.push_back(deck.experiment.dynamics->duration * i / deck.task.steps);
-    solution.path.push_back(path[i].second);
-  }
-  solution.ok = true;
-}
-
-}  // namespace
 
 Solution solve(const Deck& deck, double time_limit) {
   const fs::path file = program();

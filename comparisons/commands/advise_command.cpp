@@ -19,8 +19,6 @@
 namespace springproof {
 namespace {
 
-const std::vector<std::string> usual_models = {"hybmss_avg", "hybmss_bt", "hybmss", "emsm", "msm_18", "emsm_patch"};
-
 /// "0.3", "0.3:0.49" (both ends and the middle) or "0.3,0.45".
 std::vector<double> numbers_of(const std::string& text) {
   std::vector<double> out;
@@ -44,7 +42,7 @@ std::vector<double> numbers_of(const std::string& text) {
   if (out.empty() || (range && (out.size() != 2 || out[0] > out[1])))
     throw InputError(fmt::format("--nu: '{}' (allowed: a range is FIRST:LAST, the first the smaller)", text));
   if (range) out.insert(out.begin() + 1, (out[0] + out[1]) / 2);
-  std::sort(out.begin(), out.end());
+  std::ranges::sort(out);
   return out;
 }
 
@@ -56,7 +54,7 @@ std::vector<IsotropicMaterial> ends_of(const Experiment& e, const std::string& w
     all.clear();
     for (const double nu : numbers_of(wanted)) all.push_back({first.youngs_modulus, nu, first.density});
   }
-  std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.poisson_ratio < b.poisson_ratio; });
+  std::ranges::sort(all, [](const auto& a, const auto& b) { return a.poisson_ratio < b.poisson_ratio; });
   if (all.size() > 2) all = {all.front(), all.back()};
   return all;
 }
@@ -126,9 +124,7 @@ Forecast AdviseCommand::forecast() const {
     throw InputError(
         "CASE: there is none (allowed: a case file or a built-in name, see springproof list; of a block: [body] geo = "
         "\"beam.geo\", size_m, cells, a [material] and [[load]]s, see docs/advise.md)");
-  const std::vector<std::filesystem::path> found = find_cases({case_});
-  if (found.size() > 1) throw InputError(fmt::format("{} is a folder of {} cases; name one", case_, found.size()));
-  const Experiment e = read_experiment(found.front());
+  const Experiment e = read_experiment(find_case(case_));
   require_one_material(e, "advise");
   if (e.relaxation.acts())
     throw InputError(e.relaxation_where,
@@ -148,8 +144,8 @@ Forecast AdviseCommand::forecast() const {
 }
 
 int AdviseCommand::check() const {
-  const std::vector<Judged> judged = judge_predictions(read_measurements(advise_folder() / "held_out.csv").rows,
-                                                       check_name_, {pilot_cells_, 20 * pilot_cells_});
+  const std::vector<Judged> judged = judge_predictions(read_measurements(advise_folder() / "held_out.csv"), check_name_,
+                                                       {pilot_cells_, 20 * pilot_cells_});
   if (judged.empty()) throw InputError(fmt::format("--check: no held-out case is called '{}'", check_name_));
   to_stdout("{:<24}{:>7} {:<12}{:>8}{:>10}{:>10}{:>8}\n", "case", "nu", "model", "cells", "error", "predicted",
             "ratio");

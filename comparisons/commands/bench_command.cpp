@@ -30,8 +30,7 @@ int BenchCommand::run() const {
   if (program.empty())
     throw std::runtime_error(
         "the program springproof-bench is neither beside this one nor named by SPRINGPROOF_BENCH_PROGRAM");
-  std::signal(SIGINT, [](int) { interrupt_children(); });
-  std::signal(SIGTERM, [](int) { interrupt_children(); });
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { interrupt_children(); });
   const ChildEnd end = run_child({program, command_->remaining(), {}, {}, {}});
   if (end.kind == ChildEnd::killed) throw std::runtime_error("springproof-bench " + words_for(end));
   return end.status;

@@ -13,10 +13,6 @@
 namespace springproof {
 namespace {
 
-Cells to_cells(const std::vector<int>& cells) {
-  return cells.empty() ? Cells{0, 0, 0} : Cells{cells[0], cells[1], cells[2]};
-}
-
 /// `springproof cross-check CASE`.
 class CrossCheckCommand {
  public:
@@ -26,7 +22,6 @@ class CrossCheckCommand {
 
  private:
   std::vector<std::string> cases_;
-  std::vector<int> cells_;
   CrossCheckOptions options_;
 };
 
@@ -35,8 +30,12 @@ void CrossCheckCommand::add_options(CLI::App& command) {
       ->required();
   command.add_option("--poisson-ratio", options_.poisson_ratio, "one of the case's (default: all)");
   command
-      .add_option("--cells", cells_,
-                  "CalculiX' finest grid, divisible by 4 (default: about 1728 elements, 512 at finite strain)")
+      .add_option_function<std::vector<int>>(
+          "--cells",
+          [this](const std::vector<int>& n) {
+            options_.cells = {n[0], n[1], n[2]};
+          },
+          "CalculiX' finest grid, divisible by 4 (default: about 1728 elements, 512 at finite strain)")
       ->expected(3)
       ->check(CLI::Range(4, 1000));
   command
@@ -53,11 +52,9 @@ void CrossCheckCommand::add_options(CLI::App& command) {
 }
 
 int CrossCheckCommand::run() const {
-  CrossCheckOptions options = options_;
-  options.cells = to_cells(cells_);
   int worst = 0;
   for (const auto& file : find_cases(cases_)) {
-    const int status = cross_check(file, options);
+    const int status = cross_check(file, options_);
     if (status > some_differ) return status;
     worst = std::max(worst, status);
   }

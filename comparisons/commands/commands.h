@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <string>
 
 namespace CLI {
 class App;
@@ -39,5 +40,9 @@ RunCommand new_command(CLI::App& parser);
 RunCommand pictures_command(CLI::App& parser);
 RunCommand report_command(CLI::App& parser);
 RunCommand reproduce_command(CLI::App& parser);
+
+/// The output of `springproof --version`: "springproof 0.1.0", the libraries that it is built with, and a line for each
+/// program beside it with the libraries of that one.
+std::string versions();
 
 }  // namespace springproof

@@ -83,9 +83,8 @@ int DiffCommand::run() const {
       "{} numbers are in both; {} values, references and uncertainties of them differ by more than {:g}, the "
       "largest by {:.1e}\n",
       all.in_both, all.changed.size(), tolerance_, all.largest);
-  const auto beyond = std::count_if(all.changed.begin(), all.changed.end(), [](const Difference& d) {
-    return d.what != "reference_uncertainty" && d.of_uncertainty > 1;
-  });
+  const auto beyond = std::ranges::count_if(
+      all.changed, [](const Difference& d) { return d.what != "reference_uncertainty" && d.of_uncertainty > 1; });
   if (!all.changed.empty()) to_stdout("{} of the differences exceed the uncertainty of the reference\n", beyond);
   print_changed(all);
   print_lonely(first_, all.only_first);

@@ -21,6 +21,7 @@
 #include "problem/files/files.h"
 #include "problem/processes/child.h"
 #include "problem/processes/interrupts.h"
+#include "problem/system/json.h"
 #include "problem/system/streams.h"
 
 namespace springproof {
@@ -35,8 +36,7 @@ std::string name_of(const ModelFrequencies& m) {
 std::string supports_words(const Experiment& e) {
   std::vector<std::string> patches;
   for (const Load& load : supports_of(e))
-    if (const std::string& on = *patch_of(load); std::find(patches.begin(), patches.end(), on) == patches.end())
-      patches.push_back(on);
+    if (const std::string& on = *patch_of(load); std::ranges::find(patches, on) == patches.end()) patches.push_back(on);
   return patches.empty() ? "free" : fmt::format("held on {}", fmt::join(patches, ", "));
 }
 
@@ -50,14 +50,19 @@ void print_line(const std::string& mode, const std::string& fem, const std::stri
   to_stdout("\n");
 }
 
+/// Of a model's frequency from the reference's; none of a mode without a partner.
+std::optional<double> error_of(const FrequencyTable& t, const ModelFrequencies& m, std::size_t i) {
+  const std::optional<double>& frequency = m.rows[i].frequency;
+  return frequency ? std::optional(*frequency / t.reference[i].value - 1) : std::nullopt;
+}
+
 ModelCells cells_of(const FrequencyTable& t, const ModelFrequencies& m, std::size_t i) {
   if (i >= t.reference.size())
     return {i < m.modes.frequencies.size() ? fmt::format("{:.5g}", m.modes.frequencies[i]) : "", "", ""};
   const ModeRow& row = m.rows[i];
   const std::string mac = fmt::format("{:.2f}", row.mac);
   if (!row.frequency) return {"no partner", "", mac};
-  return {fmt::format("{:.5g}", *row.frequency),
-          fmt::format("{:+.2f}", 100 * (*row.frequency / t.reference[i].value - 1)), mac};
+  return {fmt::format("{:.5g}", *row.frequency), fmt::format("{:+.2f}", 100 * *error_of(t, m, i)), mac};
 }
 
 void print_modes(const FrequencyTable& t, const std::vector<const ModelFrequencies*>& models, int modes) {
@@ -145,12 +150,10 @@ nlohmann::json json_of(const FrequencyTable& t) {
                             {"largest_error", m.largest},
                             {"pairs", nlohmann::json::array()}};
     for (std::size_t i = 0; i < m.rows.size(); ++i)
-      model["pairs"].push_back(
-          {{"mode", i + 1},
-           {"frequency_Hz", m.rows[i].frequency ? nlohmann::json(*m.rows[i].frequency) : nlohmann::json()},
-           {"error",
-            m.rows[i].frequency ? nlohmann::json(*m.rows[i].frequency / t.reference[i].value - 1) : nlohmann::json()},
-           {"mac", m.rows[i].mac}});
+      model["pairs"].push_back({{"mode", i + 1},
+                                {"frequency_Hz", m.rows[i].frequency},
+                                {"error", error_of(t, m, i)},
+                                {"mac", m.rows[i].mac}});
     out["models"].push_back(model);
   }
   return out;
@@ -223,9 +226,7 @@ void FrequenciesCommand::add_options(CLI::App& command) {
 
 int FrequenciesCommand::run() const try {
   if (vtu_ && out_.empty()) throw InputError("--vtu: needs a folder (allowed: with --out DIR)");
-  const std::vector<fs::path> found = find_cases({case_});
-  if (found.size() > 1) throw InputError(fmt::format("{} is a folder of {} cases; name one", case_, found.size()));
-  const Experiment whole = read_experiment(found.front());
+  const Experiment whole = read_experiment(find_case(case_));
   const Experiment experiment = with_settings(case_of_modes(whole, options_), poisson_ratios_);
   require_one_listed(experiment);
   end_at_interrupts();
@@ -249,8 +250,7 @@ int FrequenciesCommand::run() const try {
     for (const FrequencyTable& t : solved) {
       print(experiment, t, options_.modes);
       std::fflush(stdout);
-      all = all && t.failure.empty() &&
-            std::all_of(t.models.begin(), t.models.end(), [](const auto& m) { return m.message.empty(); });
+      all = all && t.failure.empty() && std::ranges::all_of(t.models, [](const auto& m) { return m.message.empty(); });
       if (out_.empty()) continue;
       tables.push_back(json_of(t));
       if (vtu_) write_all_shapes(out_, experiment, t);

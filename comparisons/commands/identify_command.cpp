@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "comparisons/commands/commands.h"
-#include "comparisons/identify/identify.h"
+#include "comparisons/identify/identified.h"
 #include "comparisons/sweep/find_cases.h"
 #include "comparisons/sweep/folder_lock.h"
 #include "comparisons/sweep/status.h"
@@ -32,12 +32,11 @@ std::vector<Identification> wanted_of(const Experiment& e, const std::vector<std
   std::vector<std::string> names;
   for (const Identification& i : all) names.push_back(i.name);
   for (const std::string& name : only)
-    if (std::find(names.begin(), names.end(), name) == names.end())
+    if (std::ranges::find(names, name) == names.end())
       throw InputError(
           fmt::format("--only: '{}' is no [[identify]] of the case (allowed: {})", name, fmt::join(names, ", ")));
   if (!only.empty())
-    std::erase_if(all,
-                  [&](const Identification& i) { return std::find(only.begin(), only.end(), i.name) == only.end(); });
+    std::erase_if(all, [&](const Identification& i) { return std::ranges::find(only, i.name) == only.end(); });
   for (Identification& i : all)
     for (std::size_t p = 0; !start.empty() && p < i.parameters.size(); ++p) {
       SoughtParameter& sought = i.parameters[p];
@@ -83,9 +82,7 @@ void IdentifyCommand::add_options(CLI::App& command) {
 }
 
 int IdentifyCommand::run() const {
-  const std::vector<fs::path> found = find_cases({case_});
-  if (found.size() > 1) throw InputError(fmt::format("{} is a folder of {} cases; name one", case_, found.size()));
-  const Experiment e = read_experiment(found.front());
+  const Experiment e = read_experiment(find_case(case_));
   const std::vector<Identification> wanted = wanted_of(e, only_, start_);
   end_at_interrupts();
   const fs::path runs = fs::path(out_) / "runs";
@@ -96,7 +93,7 @@ int IdentifyCommand::run() const {
   std::vector<Identified> all;
   for (const Identification& sought : wanted) {
     const Status::Working working(status, fmt::format("{}, {}", e.name, sought.name));
-    all.push_back(identify(e, sought, {.folder = runs, .synthetic = synthetic_}));
+    all.push_back(identify(e, sought, runs, synthetic_));
     if (children_interrupted()) return interrupted_status;
     if (!json_) to_stdout("{}", text_of(all.back()));
     std::fflush(stdout);
@@ -104,7 +101,7 @@ int IdentifyCommand::run() const {
   write_file(fs::path(out_) / "identify.json", json_text(all));
   write_file(fs::path(out_) / "identify.html", identify_page(all));
   if (json_) to_stdout("{}", json_text(all));
-  return std::all_of(all.begin(), all.end(), [](const Identified& i) { return i.ok; }) ? 0 : 1;
+  return std::ranges::all_of(all, [](const Identified& i) { return i.ok; }) ? 0 : 1;
 }
 
 }  // namespace

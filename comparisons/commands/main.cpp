@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "comparisons/commands/commands.h"
-#include "comparisons/commands/versions.h"
 #include "msm/gpu/gpu.h"
 #include "problem/system/streams.h"
 
@@ -96,7 +95,7 @@ int parse_and_run(int argc, char** argv) {
     to_stdout("{}", tasks);
     return 0;
   }
-  const auto asked = std::find_if(commands.begin(), commands.end(), [](const Ready& r) { return r.command->parsed(); });
+  const auto asked = std::ranges::find_if(commands, [](const Ready& r) { return r.command->parsed(); });
   if (asked->reads != Reads::nothing) gpu::wants_gpu();  // refuses what cannot be had before anything runs
   return asked->run();
 }

@@ -73,7 +73,7 @@ void find_ends(const Surface& surface, Measured& m) {
     m.ends[end].name = names_of(BodySide{})[2 * m.longest + end];
   }
   const auto suffices = [&](const PatchRule& end) { return area_of(end, surface) >= enough * m.volume / m.length; };
-  if (std::all_of(m.ends.begin(), m.ends.end(), suffices)) return;
+  if (std::ranges::all_of(m.ends, suffices)) return;
   if (const std::optional<Vec3> axis = own_axis(surface)) m.along = *axis;
   const auto [low, high] =
       std::ranges::minmax_element(surface.points, {}, [&](const Vec3& p) { return m.along.dot(p); });
@@ -214,7 +214,7 @@ int NewCommand::run() const {
   body.scale = scale_;
   if (!size_.empty()) body.size = Vec3(size_[0], size_[1], size_[2]);
   const auto& endings = body_file_endings();
-  if (std::find(endings.begin(), endings.end(), extension_of(body_)) == endings.end())
+  if (std::ranges::find(endings, extension_of(body_)) == endings.end())
     throw InputError(fmt::format("{}: is no body (allowed: {})", body_, fmt::join(endings, ", ")));
   if (body.is_script() && size_.empty())
     throw InputError(fmt::format("{}: a script needs its size (allowed: --size X Y Z [m])", body_));

@@ -22,7 +22,7 @@ std::vector<std::string> cases_of(const std::vector<PaperFigure>& figures) {
   std::vector<std::string> all;
   for (const PaperFigure& figure : figures)
     for (const std::string& name : figure.cases)
-      if (std::find(all.begin(), all.end(), name) == all.end()) all.push_back(name);
+      if (std::ranges::find(all, name) == all.end()) all.push_back(name);
   return all;
 }
 
@@ -82,8 +82,7 @@ int ReproduceCommand::run() {
     if (!cases.empty()) from_ = {options_.out};
   }
   const PaperResults results(from_);
-  if (!cases.empty() &&
-      std::none_of(cases.begin(), cases.end(), [&](const std::string& name) { return results.has(name); }))
+  if (!cases.empty() && std::ranges::none_of(cases, [&](const std::string& name) { return results.has(name); }))
     throw InputError(fmt::format("--from: holds results of none of the cases of these figures (wanted: {})",
                                  fmt::join(cases, ", ")));
   std::vector<DrawnFigure> drawn;

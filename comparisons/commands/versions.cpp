@@ -1,4 +1,4 @@
-#include "comparisons/commands/versions.h"
+#include "comparisons/commands/commands.h"
 
 #include <fmt/format.h>
 #include <xxhash.h>

@@ -29,8 +29,6 @@ constexpr std::array<KindOfSpring, 3> spring_kinds = {{{"k_e", "compliance 1/k_e
                                                        {"k_c", "compliance 1/k_c, cube diagonal", {1, 0, 0}}}};
 constexpr const char* spring_places[] = {"inside", "surface", "edge"};
 
-double corner_tetrahedron(const EngineFacts& f) { return f.edge * f.edge * f.edge / 6; }
-
 void add_compliances(const EngineFacts& f, std::vector<FactRow>& rows) {
   for (std::size_t kind = 0; kind < spring_kinds.size(); ++kind) {
     FactRow row{spring_kinds[kind].label, "m/N", {}};
@@ -119,11 +117,12 @@ FactGroup facts_of(const EngineFacts& f) {
   FactGroup group{"for real-time engines (docs/engines.md)"};
   add_compliances(f, group.rows);
   const bool corrects = f.correction > 0;
-  group.rows.push_back({corrects ? "constraint on 6 V of a sixth of a cell that adds kappa" : "",
-                        "m^5/N",
-                        {{"/engines/volume_compliance_m5_N",
-                          corrects ? FactValue(volume_compliance(corner_tetrahedron(f), f.correction)) : FactValue()}},
-                        "36 V / kappa; tetrahedra lock"});
+  group.rows.push_back(
+      {corrects ? "constraint on 6 V of a sixth of a cell that adds kappa" : "",
+       "m^5/N",
+       {{"/engines/volume_compliance_m5_N",
+         corrects ? FactValue(volume_compliance(f.edge * f.edge * f.edge / 6, f.correction)) : FactValue()}},
+       "36 V / kappa; tetrahedra lock"});
   const BulletNeoHooke bullet = bullet_neo_hooke(f.material);
   group.rows.push_back({"Bullet's neo-Hooke, mu", "Pa", {{"/engines/bullet_neo_hooke/mu_Pa", bullet.mu}}, "4/3 G"});
   group.rows.push_back(

@@ -49,19 +49,13 @@ void require_springs_alone(const SpringsFile& springs) {
 }
 
 /// A document whose arrays are added by name.
-class EngineDocument {
- public:
-  explicit EngineDocument(OrderedJson head) { document_.head = std::move(head); }
-
-  OrderedJson& head() { return document_.head; }
-
+struct EngineDocument : SpringsDocument {
   template <class T>
   void array(const std::string& table, const std::string& key, std::vector<T> values, std::size_t columns = 1) {
     const std::string name = table + "." + key;
-    document_.head[table][key] = "npy:" + name;
+    head[table][key] = "npy:" + name;
     const std::size_t rows = values.size() / columns;
-    document_.arrays.push_back(
-        {name, columns == 1 ? std::vector{rows} : std::vector{rows, columns}, std::move(values)});
+    arrays.push_back({name, columns == 1 ? std::vector{rows} : std::vector{rows, columns}, std::move(values)});
   }
 
   template <class Rows>
@@ -71,17 +65,12 @@ class EngineDocument {
     for (const auto& row : rows) flat.insert(flat.end(), row.begin(), row.end());
     array(table, key, std::move(flat), columns);
   }
-
-  std::string text() const { return as_json(document_); }
-
- private:
-  SpringsDocument document_;
 };
 
 /// Every name of a patch with its nodes.
 void add_patches(const std::string& table, const std::vector<std::string>& names, const SpringsFile& springs,
                  EngineDocument& out) {
-  out.head()[table] = OrderedJson::object();
+  out.head[table] = OrderedJson::object();
   for (const std::string& name : names) {
     const std::vector<int>& nodes = springs.patches.at(name);
     out.array(table, name, std::vector<std::int32_t>(nodes.begin(), nodes.end()));
@@ -114,9 +103,10 @@ OrderedJson head_of(const SpringsFile& springs, const std::string& format, const
           {"safe_time_step_s", safe_step}};
 }
 
-void add_body(const EngineBody& body, const std::vector<Spring>& springs, EngineDocument& out) {
-  const Network& network = body.springs.model.network;
-  const Eigen::VectorXd mass = masses(network, body.springs.density);
+void add_body(const SpringsFile& body, const std::vector<std::string>& pinned, const std::vector<Spring>& springs,
+              EngineDocument& out) {
+  const Network& network = body.model.network;
+  const Eigen::VectorXd mass = masses(network, body.density);
   out.array("nodes", "position_m", std::vector<double>(network.X.data(), network.X.data() + network.X.size()), 3);
   out.array("nodes", "mass_kg", std::vector<double>(mass.begin(), mass.end()));
   std::vector<std::array<int, 2>> ends;
@@ -135,11 +125,11 @@ void add_body(const EngineBody& body, const std::vector<Spring>& springs, Engine
   out.nodes("tetrahedra", "nodes", tetrahedra);
   out.nodes("surface", "facets", surface_of(network.X, tetrahedra));
   out.nodes("cells", "nodes", network.cells.corners);
-  out.head()["cells"]["edge_m"] = network.cells.edge;
-  add_patches("pins", body.pinned, body.springs, out);
+  out.head["cells"]["edge_m"] = network.cells.edge;
+  add_patches("pins", pinned, body, out);
   std::vector<std::string> all;
-  for (const auto& [name, nodes] : body.springs.patches) all.push_back(name);
-  add_patches("patches", all, body.springs, out);
+  for (const auto& [name, nodes] : body.patches) all.push_back(name);
+  add_patches("patches", all, body, out);
 }
 
 /// The smallest step that single precision allows in this body, by gravity.
@@ -149,59 +139,56 @@ double least_step(const SpringsFile& springs) {
 
 }  // namespace
 
-std::string jolt_json(const EngineBody& body) {
-  const SpringsFile& springs = body.springs;
+std::string jolt_json(const SpringsFile& springs, const std::vector<std::string>& pinned) {
   require_springs_alone(springs);
   require_cubes(springs, "Jolt");
   const double safe = springs.derived.at("safe_time_step_s");
-  EngineDocument out(head_of(springs, "jolt", springs.origin.model, 0.25, safe));
-  out.head()["substeps"] = {
+  EngineDocument out{{head_of(springs, "jolt", springs.origin.model, 0.25, safe), {}}};
+  out.head["substeps"] = {
       {"least_s", least_step(springs)},
       {"most_s", largest_sweep_step(safe)},
       {"why",
        "length of one of Jolt's iterations, which are substeps: below the least, single precision no longer adds g h^2 "
        "to the farthest coordinate; above the most, one sweep over the springs leaves the body more than 2 % too "
        "soft"}};
-  out.head()["engine"] = {{"linear_damping", 0},
-                          {"default_linear_damping", 0.1},
-                          {"update_position", false},
-                          {"make_rotation_identity", true},
-                          {"volume_constraints", "none: of tetrahedra, they lock"}};
-  add_body(body, springs.model.network.springs, out);
-  return out.text();
+  out.head["engine"] = {{"linear_damping", 0},
+                        {"default_linear_damping", 0.1},
+                        {"update_position", false},
+                        {"make_rotation_identity", true},
+                        {"volume_constraints", "none: of tetrahedra, they lock"}};
+  add_body(springs, pinned, springs.model.network.springs, out);
+  return as_json(out);
 }
 
-std::string bullet_json(const EngineBody& body) {
-  const SpringsFile& springs = body.springs;
+std::string bullet_json(const SpringsFile& springs, const std::vector<std::string>& pinned) {
   require_cubes(springs, "Bullet");
   const IsotropicMaterial& m = *springs.material;
   const BulletNeoHooke neo_hooke = bullet_neo_hooke(m);
   const double safe = safe_time_step_of_tetrahedra(m, springs.model.network.cells.edge);
-  EngineDocument out(head_of(springs, "bullet", "linear tetrahedra", m.poisson_ratio, safe));
-  out.head()["substeps"] = {
+  EngineDocument out{{head_of(springs, "bullet", "linear tetrahedra", m.poisson_ratio, safe), {}}};
+  out.head["substeps"] = {
       {"least_s", least_step(springs)},
       {"most_s", slowest_frame},
       {"why",
        "implicit, whose stiffness no step changes but whose damping is pi f dt: below the least, single precision no "
        "longer adds g h^2 to the farthest coordinate; explicit steps end at safe_time_step_s"}};
-  out.head()["engine"] = {
+  out.head["engine"] = {
       {"neo_hooke", {{"mu_Pa", neo_hooke.mu}, {"lambda_Pa", neo_hooke.lambda}}},
       {"linear", {{"youngs_modulus_Pa", m.youngs_modulus}, {"poisson_ratio", m.poisson_ratio}}},
       {"damping", {{"neo_hooke", 0}, {"linear_alpha_1_s", 0}, {"linear_beta_s", 0}}},
       {"default_damping", {{"neo_hooke", 0.05}, {"linear_alpha_1_s", 0.01}, {"linear_beta_s", 0.01}}}};
-  add_body(body, {}, out);
-  return out.text();
+  add_body(springs, pinned, {}, out);
+  return as_json(out);
 }
 
-std::string mujoco_mjcf(const EngineBody& body) {
-  const SpringsFile& springs = body.springs;
+std::string mujoco_mjcf(const SpringsFile& springs, const std::vector<std::string>& pinned) {
   require_cubes(springs, "MuJoCo");
   const Network& network = springs.model.network;
   const IsotropicMaterial& m = *springs.material;
   const double step = 1.0 / 240, edge = network.cells.edge;
   const Eigen::VectorXd mass = masses(network, springs.density);
   std::vector<char> fixed(network.nodes(), 0);
-  for (const std::string& name : body.pinned)
+  for (const std::string& name : pinned)
     for (const int n : springs.patches.at(name)) fixed[n] = 1;
   std::string out = fmt::format(
       "<!-- {}, version 1, of {} (checksum {}): a solid of E = {:g} Pa, nu = {:g}, {:g} kg/m^3 in linear tetrahedra; "

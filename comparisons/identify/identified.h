@@ -1,11 +1,13 @@
 // What measured values tell of the numbers of a case.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "comparisons/results/records.h"
+#include "problem/case_file/identification.h"
 
 namespace springproof {
 
@@ -81,5 +83,13 @@ std::string identify_page(const std::vector<Identified>& all);
 
 /// What the values do not tell, what the limits leave out, whether the values agree, and how many predictions hold.
 std::vector<std::string> sentences_of(const Identified& identified);
+
+/// Weighted least squares over the fitted values, by their uncertainties, on the lattice of fewest cells, corrected to
+/// the limit of all its lattices until that no longer matters.  What the values do not tell is held at its start.  The
+/// uncertainties are those of the values, of the case's inputs (but for what is sought) and of the limit.
+/// @param folder where runs are kept
+/// @param synthetic number of sets that are made of the fit and fitted anew
+Identified identify(const Experiment& experiment, const Identification& sought, const std::filesystem::path& folder,
+                    int synthetic);
 
 }  // namespace springproof

@@ -6,7 +6,7 @@
 
 #include "comparisons/identify/identified.h"
 #include "comparisons/judge/validation.h"
-#include "comparisons/report/assets.h"
+#include "comparisons/report/report.h"
 #include "problem/files/encoding.h"
 
 namespace springproof {
@@ -165,29 +165,7 @@ std::string identify_page(const std::vector<Identified>& all) {
   std::string sections;
   for (const Identified& out : all) sections += section_html(out);
   const std::string title = all.empty() ? "" : xml_escaped(all.front().case_name);
-  return fmt::format(R"(<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; img-src data:">
-<title>springproof: {0}, identified</title>
-<link rel="icon" href="data:,">
-<style>
-{1}
-</style>
-</head>
-<body>
-<header>
-<p class="brand">springproof</p>
-<h1>{0}: what was measured, and what it tells</h1>
-</header>
-<main>
-{2}</main>
-</body>
-</html>
-)",
-                     title, report_assets::style_css, sections);
+  return plain_page(title + ", identified", "<h1>" + title + ": what was measured, and what it tells</h1>\n", sections);
 }
 
 }  // namespace springproof

@@ -34,8 +34,7 @@ std::vector<std::size_t> by_fineness(const Body& body, std::size_t count) {
   std::iota(order.begin(), order.end(), 0);
   const auto sort_by = [&](const auto& of_each, auto coarser) {
     if (of_each.size() == count)
-      std::stable_sort(order.begin(), order.end(),
-                       [&](std::size_t a, std::size_t b) { return coarser(of_each[a], of_each[b]); });
+      std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return coarser(of_each[a], of_each[b]); });
   };
   sort_by(body.voxel_counts, std::less<>());
   sort_by(body.voxel_edges, std::greater<>());
@@ -62,7 +61,7 @@ ModelValues::ModelValues(const Experiment& e, const Identification& sought, std:
       lattices_(!sought.cells.empty()  ? sought.cells
                 : e.body.cells.empty() ? std::vector<Cells>(e.body.resolutions(), Cells{0, 0, 0})
                                        : e.body.cells) {
-  std::sort(lattices_.begin(), lattices_.end(), has_fewer_cells);
+  std::ranges::sort(lattices_, has_fewer_cells);
   resolution_ = by_fineness(e.body, lattices_.size());
 }
 

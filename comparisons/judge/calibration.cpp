@@ -12,6 +12,8 @@
 
 namespace springproof {
 
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(KnownQuantity, case_name, poisson_ratio, element, measure, unit, kind, known,
+                                   known_uncertainty, where, value, uncertainty, note)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(CalibrationShare, kind, quantities, inside, median_ratio, largest_ratio)
 
 namespace {
@@ -92,31 +94,10 @@ CalibrationShare share_of(const std::string& kind, const std::vector<KnownQuanti
   }
   share.quantities = static_cast<int>(ratios.size());
   if (ratios.empty()) return share;
-  std::sort(ratios.begin(), ratios.end());
+  std::ranges::sort(ratios);
   share.median_ratio = (ratios[(ratios.size() - 1) / 2] + ratios[ratios.size() / 2]) / 2;
   share.largest_ratio = ratios.back();
   return share;
-}
-
-Json json_of(const KnownQuantity& q) {
-  return {{"case", q.case_name},
-          {"poisson_ratio", q.poisson_ratio},
-          {"element", q.element},
-          {"measure", q.measure},
-          {"unit", q.unit},
-          {"kind", q.kind},
-          {"known", q.known},
-          {"known_uncertainty", q.known_uncertainty},
-          {"where", q.where},
-          {"value", q.value},
-          {"uncertainty", q.uncertainty},
-          {"note", q.note}};
-}
-
-Json list(const std::vector<KnownQuantity>& quantities) {
-  Json out = Json::array();
-  for (const KnownQuantity& q : quantities) out.push_back(json_of(q));
-  return out;
 }
 
 }  // namespace
@@ -154,7 +135,7 @@ std::vector<KnownQuantity> known_quantities(const CaseResult& result) {
     const auto same = [&](const auto& x) {
       return x.measure == r.measure && same_poisson_ratio(x.poisson_ratio, r.poisson_ratio);
     };
-    if (std::none_of(records.begin(), records.end(), same)) records.push_back(r);
+    if (std::ranges::none_of(records, same)) records.push_back(r);
   }
   return known_quantities(result.experiment, records);
 }
@@ -168,7 +149,12 @@ std::vector<CalibrationShare> calibration_shares(const std::vector<KnownQuantity
 
 Json calibration_json(const std::vector<KnownQuantity>& quantities) {
   if (quantities.empty()) return nullptr;
-  return {{"shares", calibration_shares(quantities)}, {"quantities", list(quantities)}};
+  Json all = quantities;
+  for (Json& q : all) {
+    q["case"] = q.at("case_name");
+    q.erase("case_name");
+  }
+  return {{"shares", calibration_shares(quantities)}, {"quantities", all}};
 }
 
 std::string calibration_table(const std::vector<KnownQuantity>& quantities) {

@@ -46,7 +46,7 @@ struct Weighted {
 };
 
 double percentile(std::vector<Weighted> values) {
-  std::sort(values.begin(), values.end(), [](const Weighted& a, const Weighted& b) { return a.value < b.value; });
+  std::ranges::sort(values, [](const Weighted& a, const Weighted& b) { return a.value < b.value; });
   double whole = 0, sum = 0;
   for (const Weighted& v : values) whole += v.weight;
   for (const Weighted& v : values)
@@ -76,15 +76,6 @@ Eigen::Matrix3d nearest_spin(const NodalVectors& r, const NodalVectors& u, const
   return cross_matrix(inertia.completeOrthogonalDecomposition().solve(momentum));
 }
 
-/// R - 1 of the rotation nearest to r + u = R r (Kabsch 1976).
-Eigen::Matrix3d nearest_turn(const NodalVectors& r, const NodalVectors& u, const Eigen::VectorXd& weights) {
-  const Eigen::Matrix3d moments = (r + u).transpose() * weights.asDiagonal() * r;
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(moments, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Vec3 signs = Vec3::Ones();
-  signs[2] = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
-  return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose() - Eigen::Matrix3d::Identity();
-}
-
 double largest_at_node(const NodalVectors& u) { return u.rows() > 0 ? u.rowwise().norm().maxCoeff() : 0; }
 
 }  // namespace
@@ -112,11 +103,19 @@ DeformationSize deformation_size(const Mesh& mesh, const NodalVectors& displacem
   return {percentile(std::move(strains)), percentile(std::move(rotations))};
 }
 
+Eigen::Matrix3d nearest_rotation(const NodalVectors& from, const NodalVectors& to, const Eigen::VectorXd& weights) {
+  const Eigen::Matrix3d moments = to.transpose() * weights.asDiagonal() * from;
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(moments, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
+  return svd.matrixU() * Vec3(1, 1, sign).asDiagonal() * svd.matrixV().transpose();
+}
+
 NodalVectors less_rigid_motion(const NodalVectors& X, const NodalVectors& u, const Eigen::VectorXd& weights,
                                Kinematics kinematics) {
   const NodalVectors r = X.rowwise() - weighted_mean(X, weights), v = u.rowwise() - weighted_mean(u, weights);
-  const Eigen::Matrix3d turn =
-      kinematics == Kinematics::linear ? nearest_spin(r, v, weights) : nearest_turn(r, v, weights);
+  const Eigen::Matrix3d turn = kinematics == Kinematics::linear
+                                   ? nearest_spin(r, v, weights)
+                                   : Eigen::Matrix3d(nearest_rotation(r, r + v, weights) - Eigen::Matrix3d::Identity());
   return v - r * turn.transpose();
 }
 

@@ -1,4 +1,4 @@
-// Size of the deformation of a body, which decides whether linear theory applies.
+// Size of the deformation of a body, which decides whether linear theory applies; its wrinkles.
 #pragma once
 
 #include "meshes/mesh.h"
@@ -16,6 +16,9 @@ struct DeformationSize {
 /// For a displacement (n x 3 [m]) at the nodes of a mesh of hexahedra, evaluated at the 2 x 2 x 2 Gauss points of each
 /// cell.
 DeformationSize deformation_size(const Mesh& mesh, const NodalVectors& displacement, Kinematics kinematics);
+
+/// The rotation nearest to to = R from in the mean square (Kabsch 1976), both n x 3 about their weighted means.
+Eigen::Matrix3d nearest_rotation(const NodalVectors& from, const NodalVectors& to, const Eigen::VectorXd& weights);
 
 /// The displacement (n x 3 [m], of points X) less the rigid motion nearest to it in the weighted L2 norm: a + w x X
 /// under linear kinematics, a rotation and a translation under finite ones.
@@ -37,5 +40,21 @@ struct DisplacementScale {
 /// would be right in the ride.
 DisplacementScale displacement_scale(const Mesh& mesh, const NodalVectors& displacement, bool moved,
                                      Kinematics kinematics);
+
+/// Root mean squares of a displacement field.
+struct Wrinkles {
+  double alternating = 0;  ///< over pairs of neighbouring cells, of half the difference of their hourglass strains [1]
+  double strain = 0;       ///< over cells, of all strain [1]
+
+  double share() const { return strain > 0 ? alternating / strain : 0; }
+};
+
+/// The hourglass strain of a cell is what its corners do beyond an affine motion; bending has it too, but alike in
+/// neighbours.  The share of a smooth field is of the order (edge over its length)^2; the wave (-1)^(i+j) across x and
+/// y, in which the two diagonals of each face grow and shrink in turn (Golec et al. 2019, Figs. 3 and 6), has 0.8.  A
+/// field whose strain is round-off of the positions, as of a body that flies, has none.
+/// @param mesh of hexahedra
+/// @param displacement of its nodes [m], n x 3
+Wrinkles wrinkles(const Mesh& mesh, const NodalVectors& displacement);
 
 }  // namespace springproof

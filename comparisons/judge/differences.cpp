@@ -125,10 +125,10 @@ Differences differences(const ResultsFolder& first, const ResultsFolder& second,
     compare("reference_uncertainty", a.reference_uncertainty.value_or(nan), b.reference_uncertainty.value_or(nan));
   }
   for (const Row& row : second.rows)
-    if (const auto& left = others.at(key_of(row)); std::find(left.begin(), left.end(), &row) != left.end())
+    if (const auto& left = others.at(key_of(row)); std::ranges::find(left, &row) != left.end())
       all.only_second.push_back(row);
-  std::stable_sort(all.changed.begin(), all.changed.end(),
-                   [](const Difference& a, const Difference& b) { return a.relative > b.relative; });
+  std::ranges::stable_sort(all.changed,
+                           [](const Difference& a, const Difference& b) { return a.relative > b.relative; });
   return all;
 }
 

@@ -42,17 +42,13 @@ void decide(const Expectation& e, bool any_reference, Check& check) {
 }
 
 Check judge_one(const CaseResult& result, const Expectation& e, const RunKey& key) {
-  Check check{key,
-              e.measure,
-              unit_of(e.measure),
-              to_string(e.source),
-              e.at_least ? *e.at_least : e.value.value_or(0),
-              {},
-              0,
-              {},
-              Verdict::no_result,
-              e.where,
-              e.at_least.has_value()};
+  Check check = of_run<Check>(key);
+  check.measure = e.measure;
+  check.unit = unit_of(e.measure);
+  check.source = to_string(e.source);
+  check.expected = e.at_least ? *e.at_least : e.value.value_or(0);
+  check.where = e.where;
+  check.at_least = e.at_least.has_value();
   if (const auto element = reference_element(result.experiment, e.model)) {
     if (const ReferenceRecord* r = find_reference(result, *element, key.poisson_ratio, e.measure)) {
       check.computed = r->value;
@@ -66,9 +62,9 @@ Check judge_one(const CaseResult& result, const Expectation& e, const RunKey& ke
     }
   }
   check.within = e.relative ? e.within * std::abs(check.expected) : e.within;
-  const bool any_reference =
-      std::any_of(result.references.begin(), result.references.end(),
-                  [&](const ReferenceRecord& r) { return same_poisson_ratio(r.poisson_ratio, key.poisson_ratio); });
+  const bool any_reference = std::ranges::any_of(result.references, [&](const ReferenceRecord& r) {
+    return same_poisson_ratio(r.poisson_ratio, key.poisson_ratio);
+  });
   decide(e, any_reference, check);
   return check;
 }
@@ -76,7 +72,7 @@ Check judge_one(const CaseResult& result, const Expectation& e, const RunKey& ke
 /// Displacements of another program are of one Poisson's ratio, and compared at one resolution.
 bool left_out(const CaseResult& result, const RunKey& key) {
   const auto runs_there = [&](bool here) {
-    return std::any_of(result.runs.begin(), result.runs.end(), [&](const Run& run) {
+    return std::ranges::any_of(result.runs, [&](const Run& run) {
       return run.kind == "external" && run.model == key.model && (!here || same_run(run, key));
     });
   };

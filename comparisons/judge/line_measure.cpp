@@ -69,7 +69,7 @@ std::vector<Row> over_lattices(const std::vector<Row>& rows, const Row& like) {
   std::vector<Row> found;
   for (const Row& r : rows)
     if (r.measure == like.measure && r.model == like.model) found.push_back(r);
-  std::stable_sort(found.begin(), found.end(), [](const Row& a, const Row& b) { return a.cells[0] < b.cells[0]; });
+  std::ranges::stable_sort(found, [](const Row& a, const Row& b) { return a.cells[0] < b.cells[0]; });
   return found;
 }
 

@@ -1,9 +1,10 @@
 #include "comparisons/judge/patch_mean.h"
 
-#include <Eigen/Dense>
 #include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
+
+#include "comparisons/judge/deformation.h"
 
 namespace springproof {
 namespace {
@@ -82,11 +83,7 @@ std::map<std::string, double> turns(const std::vector<PatchSamples>& patches, co
     const auto moved = u.middleRows(first, p.points.rows());
     const Eigen::RowVector3d middle = p.weights.transpose() * p.points, mean = p.weights.transpose() * moved;
     const NodalVectors rest = p.points.rowwise() - middle, now = rest + (moved.rowwise() - mean);
-    const Eigen::Matrix3d moments = now.transpose() * p.weights.asDiagonal() * rest;
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(moments, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
-    const Eigen::AngleAxisd turn(
-        Eigen::Matrix3d(svd.matrixU() * Vec3(1, 1, sign).asDiagonal() * svd.matrixV().transpose()));
+    const Eigen::AngleAxisd turn(nearest_rotation(rest, now, p.weights));
     for (int d = 0; d < 3; ++d)
       out["turn." + p.patch + '.' + "xyz"[d]] = turn.angle() * turn.axis()[d] * 180 / std::numbers::pi;
     first += p.points.rows();

@@ -29,8 +29,7 @@ void set_limit(const LatticeValues& s, ValidatedValue& v) {
 
 /// Change of a simulated value by an input, on the lattice of fewest cells; empty: one of the two runs has no value.
 Maybe change_by(const CaseResult& r, const MeasuredValue& m, const std::string& input) {
-  const WhereComputed at{r.experiment.models.front().label,
-                         *std::min_element(r.cells.begin(), r.cells.end(), has_fewer_cells)};
+  const WhereComputed at{r.experiment.models.front().label, *std::ranges::min_element(r.cells, has_fewer_cells)};
   const Maybe before = simulated(r, m, "", at), after = simulated(r, m, input, at);
   return before && after && std::isfinite(*after - *before) ? Maybe(*after - *before) : Maybe();
 }
@@ -190,8 +189,7 @@ std::string failed_runs(const CaseResult& r) {
 }
 
 std::string judged(const CaseResult& r) {
-  const auto count =
-      std::count_if(r.validation.begin(), r.validation.end(), [](const auto& v) { return v.ratio.has_value(); });
+  const auto count = std::ranges::count_if(r.validation, [](const auto& v) { return v.ratio.has_value(); });
   if (count == 0) return "";
   const std::vector<const ValidatedValue*> off = outside(r);
   std::string out = fmt::format(
@@ -327,7 +325,7 @@ bool has_fewer_cells(const Cells& a, const Cells& b) { return cell_count(a) < ce
 
 LatticeValues sequence_of(const CaseResult& r, const MeasuredValue& m, const std::string& model) {
   std::vector<Cells> all = r.cells;
-  std::sort(all.begin(), all.end(), has_fewer_cells);
+  std::ranges::sort(all, has_fewer_cells);
   LatticeValues out;
   for (const Cells& cells : all)
     if (const Maybe value = simulated(r, m, "", {model, cells})) {

@@ -1,4 +1,4 @@
-#include "comparisons/judge/wrinkles.h"
+#include "comparisons/judge/deformation.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -63,7 +63,7 @@ Wrinkles wrinkles(const Mesh& mesh, const NodalVectors& displacement) {
   for (std::size_t c = 0; c < cells.size(); ++c)
     for (int f = 0; f < 6; ++f) {
       std::array<int, 4> face = face_of(mesh.hexahedra[c], f);
-      std::sort(face.begin(), face.end());
+      std::ranges::sort(face);
       const auto [at, is_new] = open.try_emplace(face, c);
       if (is_new) continue;
       alternating += ((cells[c].hourglass - cells[at->second].hourglass) / 2).squaredNorm();

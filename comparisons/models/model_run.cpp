@@ -7,7 +7,6 @@
 #include "comparisons/judge/deformation.h"
 #include "comparisons/judge/line_measure.h"
 #include "comparisons/judge/measures.h"
-#include "comparisons/judge/wrinkles.h"
 #include "comparisons/models/external.h"
 #include "comparisons/models/frequencies.h"
 #include "comparisons/models/region_means.h"

@@ -51,7 +51,7 @@ std::vector<std::size_t> models_at_rest(const Experiment& e, const std::vector<s
     const ModelChoice& choice = e.models[m];
     if (is_external(choice) || choice.in_motion) continue;
     labels.push_back(choice.label);
-    if (chosen.empty() || std::find(chosen.begin(), chosen.end(), choice.label) != chosen.end()) numbers.push_back(m);
+    if (chosen.empty() || std::ranges::find(chosen, choice.label) != chosen.end()) numbers.push_back(m);
   }
   if (numbers.empty() || numbers.size() < chosen.size())
     throw InputError(fmt::format("{}: {} of {} models to solve (allowed as --model, those at rest: {})",

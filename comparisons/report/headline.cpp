@@ -9,7 +9,6 @@
 #include <set>
 
 #include "comparisons/report/headline_cases.h"
-#include "comparisons/report/stability_words.h"
 #include "comparisons/report/words.h"
 
 namespace springproof {
@@ -121,7 +120,7 @@ class Collector {
     const Experiment& e = result.experiment;
     case_name_ = e.name;
     large_ = e.kinematics != "linear";
-    compares_displacement_ = std::find(e.measures.begin(), e.measures.end(), "displacement_error") != e.measures.end();
+    compares_displacement_ = std::ranges::find(e.measures, "displacement_error") != e.measures.end();
     motions_.clear();
     for (const ModelChoice& model : e.models) {
       if (model.in_motion) motions_.insert(model.label);
@@ -152,7 +151,7 @@ class Collector {
       sorted[{key.first, is_beside(key.second), order_of(key.second), key.second}] = errors;
     for (const auto& [key, errors] : sorted)
       headline_.models.push_back({key.name, key.beside, key.large_deformation, errors, sentence(errors)});
-    std::stable_sort(headline_.models.begin(), headline_.models.end(), [](const auto& a, const auto& b) {
+    std::ranges::stable_sort(headline_.models, [](const auto& a, const auto& b) {
       if (a.large_deformation != b.large_deformation) return b.large_deformation;
       return a.beside != b.beside ? b.beside : ranks_before(a.errors, b.errors);
     });
@@ -174,7 +173,7 @@ class Collector {
   }
 
   std::size_t order_of(const std::string& model) {
-    const auto found = std::find(order_.begin(), order_.end(), model);
+    const auto found = std::ranges::find(order_, model);
     if (found != order_.end()) return found - order_.begin();
     order_.push_back(model);
     return order_.size() - 1;

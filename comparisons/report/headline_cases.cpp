@@ -36,11 +36,6 @@ std::string reference_element_of(const CaseResult& result) {
 
 bool is_number(const std::optional<double>& x) { return x && std::isfinite(*x); }
 
-template <class T, class Holds>
-bool any_of(const std::vector<T>& list, Holds holds) {
-  return std::any_of(list.begin(), list.end(), holds);
-}
-
 // ---- the reference
 
 struct Doubt {
@@ -55,7 +50,7 @@ void add_doubts(const CaseResult& result, std::size_t case_number, std::vector<D
   const auto add = [&](double nu, const char* of, double uncertainty, bool diverges) {
     if (!(uncertainty > (diverges ? harmless_uncertainty : doubtful_uncertainty))) return;
     const std::string where = at_setting(result.experiment, name_of(result), nu);
-    const auto known = std::find_if(doubts.begin(), doubts.end(), [&](const Doubt& d) { return d.where == where; });
+    const auto known = std::ranges::find_if(doubts, [&](const Doubt& d) { return d.where == where; });
     Doubt& doubt = known == doubts.end() ? doubts.emplace_back() : *known;
     if (uncertainty >= doubt.uncertainty) doubt = {case_number, where, of, uncertainty, diverges || doubt.diverges};
     doubt.diverges = doubt.diverges || diverges;
@@ -85,8 +80,8 @@ void add_missing_references(const CaseResult& result, std::vector<std::string>& 
   const std::string element = reference_element_of(result);
   if (element.empty()) return;
   for (const double nu : result.experiment.settings()) {
-    if (any_of(result.references,
-               [&](const ReferenceRecord& r) { return r.poisson_ratio == nu && r.element == element; }))
+    if (std::ranges::any_of(result.references,
+                            [&](const ReferenceRecord& r) { return r.poisson_ratio == nu && r.element == element; }))
       continue;
     const std::string reason = reason_of_missing_reference(result, nu);
     lines.push_back(fmt::format("{}: there is no reference{}", at_setting(result.experiment, name_of(result), nu),
@@ -110,14 +105,16 @@ bool every_run_failed(const CaseResult& result) {
 bool is_at_rest(const CaseResult& result) {
   const auto deforms = [](const Deformation& d) { return d.principal_strain != 0.0 || d.rotation_deg != 0.0; };
   const auto moves = [](const Row& row) { return row.measure == "displacement_error" && is_number(row.error); };
-  return !result.deformations.empty() && !any_of(result.deformations, deforms) && !any_of(result.rows, moves);
+  return !result.deformations.empty() && !std::ranges::any_of(result.deformations, deforms) &&
+         !std::ranges::any_of(result.rows, moves);
 }
 
 bool anything_compared(const CaseResult& result) {
   const auto computed = [](const auto& item) { return is_number(item.computed); };
   return !result.histories.empty() || !result.cracks.empty() ||
-         (!is_at_rest(result) && any_of(result.rows, [](const Row& row) { return is_number(row.error); })) ||
-         any_of(result.checks, computed) || any_of(result.published, computed) ||
+         (!is_at_rest(result) &&
+          std::ranges::any_of(result.rows, [](const Row& row) { return is_number(row.error); })) ||
+         std::ranges::any_of(result.checks, computed) || std::ranges::any_of(result.published, computed) ||
          (reference_element_of(result).empty() && !result.rows.empty());  // nothing but measures was asked for
 }
 
@@ -178,9 +175,9 @@ std::optional<Warning> doubt_of_reference(const std::vector<CaseResult>& cases) 
   std::vector<Doubt> doubts;
   for (std::size_t i = 0; i < cases.size(); ++i) add_doubts(cases[i], i, doubts);
   if (doubts.empty()) return {};
-  const auto worst = std::max_element(doubts.begin(), doubts.end(),
-                                      [](const Doubt& a, const Doubt& b) { return a.uncertainty < b.uncertainty; });
-  const bool diverges = std::any_of(doubts.begin(), doubts.end(), [](const Doubt& d) { return d.diverges; });
+  const auto worst =
+      std::ranges::max_element(doubts, [](const Doubt& a, const Doubt& b) { return a.uncertainty < b.uncertainty; });
+  const bool diverges = std::ranges::any_of(doubts, [](const Doubt& d) { return d.diverges; });
   const std::string more = doubts.size() > 1 ? fmt::format(" and {} more", doubts.size() - 1) : "";
   return Warning{
       worst->case_number,
@@ -205,7 +202,7 @@ std::string motion_sentence(const std::vector<CaseResult>& cases, std::vector<st
   const HistoryRecord* history = nullptr;
   for (const CaseResult& result : cases)
     for (const HistoryRecord& h : result.histories) {
-      const bool named = std::find(closest.begin(), closest.end(), h.model) != closest.end();
+      const bool named = std::ranges::find(closest, h.model) != closest.end();
       if (h.model == fem_in_motion || (history && !named)) continue;
       of = &result;
       history = &h;
@@ -223,7 +220,7 @@ std::string motion_sentence(const std::vector<CaseResult>& cases, std::vector<st
   std::string out =
       fmt::format("Over {:.4g} s of {}, in {:.0f} steps, {}", duration, name_of(*of), steps, history->model);
   if (!kept.empty()) out += " keeps " + listed(kept);
-  const auto run = std::find_if(of->runs.begin(), of->runs.end(), [&](const Run& r) { return same_run(r, *history); });
+  const auto run = std::ranges::find_if(of->runs, [&](const Run& r) { return same_run(r, *history); });
   if (run != of->runs.end() && run->seconds > 0)
     out += fmt::format("{} {:.2g} ms of computing a step, {:.2g} s for each second of the motion",
                        kept.empty() ? " takes" : ", at", 1e3 * run->seconds / steps, run->seconds / duration);

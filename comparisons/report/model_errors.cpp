@@ -16,59 +16,11 @@ using namespace words;
 // A reference with a larger uncertainty ranks no model.
 constexpr double telling_uncertainty = 0.2;
 
-}  // namespace
-
-std::string range_text(double from, double to) {
-  return from == to ? fmt::format("at ν = {}", nu_text(from))
-                    : fmt::format("for ν from {} to {}", nu_text(from), nu_text(to));
-}
-
-std::string range_text(const ByNu& errors) { return range_text(errors.begin()->first, errors.rbegin()->first); }
-
-const std::pair<const double, Worst>& largest(const ByNu& errors) {
-  return *std::max_element(errors.begin(), errors.end(),
-                           [](const auto& a, const auto& b) { return a.second.error < b.second.error; });
-}
-
-ByNu claimed(const ModelErrors& errors, const ByNu& by_nu) {
-  ByNu out = by_nu;
-  if (errors.own_nu)
-    std::erase_if(out, [&](const auto& entry) { return !same_poisson_ratio(entry.first, *errors.own_nu); });
-  return out;
-}
-
-ByNu ranked(const ModelErrors& errors, const ByNu& by_nu) {
-  ByNu all = claimed(errors, by_nu), ordinary = all;
-  std::erase_if(ordinary, [](const auto& entry) { return entry.first < 0; });
-  return ordinary.empty() ? all : ordinary;
-}
-
-std::string cells_range(const ModelErrors& errors) {
-  if (errors.cells.empty()) return "";
-  const auto text = [](std::size_t n) {
-    return n < 10000 ? fmt::format("{}", n) : fmt::format("{},{:03}", n / 1000, n % 1000);
-  };
-  const std::size_t few = *errors.cells.begin(), many = *errors.cells.rbegin();
-  return few == many ? text(few) : fmt::format("{} to {}", text(few), text(many));
-}
-
-namespace {
-
 /// How widely a model was compared where it is ranked.
 std::pair<std::size_t, std::size_t> breadth(const ModelErrors& errors) {
   const ByNu rank = ranked(errors, errors.rank);
   return {rank.empty() ? 0 : errors.cases.size(), rank.size()};
 }
-
-}  // namespace
-
-bool ranks_before(const ModelErrors& a, const ModelErrors& b) {
-  if (breadth(a) != breadth(b)) return breadth(a) > breadth(b);
-  const ByNu of_a = ranked(a, a.rank), of_b = ranked(b, b.rank);
-  return !of_a.empty() && largest(of_a).second.error < largest(of_b).second.error;
-}
-
-namespace {
 
 struct Candidate {
   std::string name;
@@ -82,8 +34,7 @@ struct Candidate {
 
 /// Whether the models are judged by cases of large deformation: where there are no linear ones.
 bool judged_by_large(const std::map<ModelKey, ModelErrors>& models) {
-  return std::all_of(models.begin(), models.end(),
-                     [](const auto& m) { return m.first.large_deformation || m.first.beside; });
+  return std::ranges::all_of(models, [](const auto& m) { return m.first.large_deformation || m.first.beside; });
 }
 
 /// The spring models that were compared most widely, the closest first.
@@ -94,8 +45,7 @@ std::vector<Candidate> candidates(const std::map<ModelKey, ModelErrors>& models)
     if (Candidate c{key.name, large, &errors, ranked(errors, errors.rank)};
         key.large_deformation == large && !key.beside && !c.rank.empty())
       all.push_back(c);
-  std::stable_sort(all.begin(), all.end(),
-                   [](const auto& a, const auto& b) { return ranks_before(*a.errors, *b.errors); });
+  std::ranges::stable_sort(all, [](const auto& a, const auto& b) { return ranks_before(*a.errors, *b.errors); });
   if (!all.empty())
     std::erase_if(all,
                   [widest = breadth(*all.front().errors)](const Candidate& c) { return breadth(*c.errors) < widest; });
@@ -184,6 +134,46 @@ std::string without_motion(const std::string& label) {
 
 }  // namespace
 
+std::string range_text(double from, double to) {
+  return from == to ? fmt::format("at ν = {}", nu_text(from))
+                    : fmt::format("for ν from {} to {}", nu_text(from), nu_text(to));
+}
+
+std::string range_text(const ByNu& errors) { return range_text(errors.begin()->first, errors.rbegin()->first); }
+
+const std::pair<const double, Worst>& largest(const ByNu& errors) {
+  return *std::ranges::max_element(errors,
+                                   [](const auto& a, const auto& b) { return a.second.error < b.second.error; });
+}
+
+ByNu claimed(const ModelErrors& errors, const ByNu& by_nu) {
+  ByNu out = by_nu;
+  if (errors.own_nu)
+    std::erase_if(out, [&](const auto& entry) { return !same_poisson_ratio(entry.first, *errors.own_nu); });
+  return out;
+}
+
+ByNu ranked(const ModelErrors& errors, const ByNu& by_nu) {
+  ByNu all = claimed(errors, by_nu), ordinary = all;
+  std::erase_if(ordinary, [](const auto& entry) { return entry.first < 0; });
+  return ordinary.empty() ? all : ordinary;
+}
+
+std::string cells_range(const ModelErrors& errors) {
+  if (errors.cells.empty()) return "";
+  const auto text = [](std::size_t n) {
+    return n < 10000 ? fmt::format("{}", n) : fmt::format("{},{:03}", n / 1000, n % 1000);
+  };
+  const std::size_t few = *errors.cells.begin(), many = *errors.cells.rbegin();
+  return few == many ? text(few) : fmt::format("{} to {}", text(few), text(many));
+}
+
+bool ranks_before(const ModelErrors& a, const ModelErrors& b) {
+  if (breadth(a) != breadth(b)) return breadth(a) > breadth(b);
+  const ByNu of_a = ranked(a, a.rank), of_b = ranked(b, b.rank);
+  return !of_a.empty() && largest(of_a).second.error < largest(of_b).second.error;
+}
+
 std::string closest_at_rest(const std::map<ModelKey, ModelErrors>& models, std::vector<std::string>& closest) {
   std::vector<Candidate> all = candidates(models);
   if (all.empty()) return no_claim_text(models);
@@ -197,7 +187,7 @@ std::string closest_at_rest(const std::map<ModelKey, ModelErrors>& models, std::
     closest.push_back(c.name);
     uncertainty = std::max(uncertainty, doubt);
   }
-  const auto spring_models = std::count_if(models.begin(), models.end(), [&](const auto& m) {
+  const auto spring_models = std::ranges::count_if(models, [&](const auto& m) {
     return !m.first.beside && m.first.large_deformation == best.large_deformation &&
            !ranked(m.second, m.second.rank).empty();
   });
@@ -215,8 +205,7 @@ std::string closest_in_time(const std::map<std::string, ByNu>& models, std::vect
   for (const auto& [model, errors] : models)
     if (errors.size() == widest) all.emplace_back(model, largest(errors).second);
   if (all.empty()) return "";
-  std::stable_sort(all.begin(), all.end(),
-                   [](const auto& a, const auto& b) { return a.second.error < b.second.error; });
+  std::ranges::stable_sort(all, [](const auto& a, const auto& b) { return a.second.error < b.second.error; });
   const Worst& least = all.front().second;
   std::vector<std::string> names;
   const bool unnamed = closest.empty();

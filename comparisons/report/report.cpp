@@ -199,6 +199,32 @@ void write_report(const std::filesystem::path& file, const Headline& head, const
                                           {"report_js", std::string(report_js)}}));
 }
 
+std::string plain_page(const std::string& title, const std::string& header, const std::string& main,
+                       const std::string& style) {
+  return fmt::format(R"(<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; img-src data:">
+<title>springproof: {}</title>
+<link rel="icon" href="data:,">
+<style>
+{}
+{}</style>
+</head>
+<body>
+<header>
+<p class="brand">springproof</p>
+{}</header>
+<main>
+{}</main>
+</body>
+</html>
+)",
+                     title, report_assets::style_css, style, header, main);
+}
+
 // "<" occurs only in strings, where it can be written as an escape.
 std::string script_json(const nlohmann::json& json) {
   const std::string text = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);

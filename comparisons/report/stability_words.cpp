@@ -1,4 +1,4 @@
-#include "comparisons/report/stability_words.h"
+#include "comparisons/report/headline_cases.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -48,7 +48,7 @@ std::vector<std::string> holding(const CaseResult& result, const Run& of) {
   std::vector<std::string> names;
   for (const Run& run : result.runs)
     if (run.kind == "msm" && run.ok && !moves(run.model) && run.poisson_ratio == of.poisson_ratio &&
-        run.cells == of.cells && !is_wrinkled(run) && std::find(names.begin(), names.end(), run.model) == names.end())
+        run.cells == of.cells && !is_wrinkled(run) && std::ranges::find(names, run.model) == names.end())
       names.push_back(run.model);
   return names;
 }
@@ -56,8 +56,7 @@ std::vector<std::string> holding(const CaseResult& result, const Run& of) {
 std::string advice(const CaseResult& result, const Run& run) {
   const std::vector<std::string> names = holding(result, run);
   if (names.empty()) {
-    const bool tried = std::any_of(result.runs.begin(), result.runs.end(),
-                                   [](const Run& r) { return r.model.starts_with("hybmss_avg"); });
+    const bool tried = std::ranges::any_of(result.runs, [](const Run& r) { return r.model.starts_with("hybmss_avg"); });
     return std::string("no model of the case holds: apply less") + (tried ? "" : ", or take hybmss_avg");
   }
   return fmt::format("{} {} the whole load there", listed(names), names.size() == 1 ? "bears" : "bear");
@@ -89,7 +88,7 @@ std::string limit_sentence(const Experiment& e, const LatticeLimit& limit) {
 std::string stability_answer(const std::vector<CaseResult>& cases) {
   std::map<std::string, double> least;
   for (const CaseResult& result : cases) {
-    if (std::none_of(result.runs.begin(), result.runs.end(), is_lost)) continue;
+    if (std::ranges::none_of(result.runs, is_lost)) continue;
     double finest = 0;
     for (const Run& run : result.runs) finest = std::max(finest, cell_count(run.cells));
     for (const Run& run : result.runs) {
@@ -102,7 +101,7 @@ std::string stability_answer(const std::vector<CaseResult>& cases) {
   }
   if (least.empty()) return "";
   std::vector<std::pair<std::string, double>> models(least.begin(), least.end());
-  std::stable_sort(models.begin(), models.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+  std::ranges::stable_sort(models, [](const auto& a, const auto& b) { return a.second > b.second; });
   std::vector<std::string> parts;
   for (const auto& [model, share] : models)
     parts.push_back(fmt::format(

@@ -25,7 +25,7 @@ std::string largest_text(const ByNu& errors) {
 
 std::string seconds_text(std::vector<double> seconds) {
   if (seconds.empty()) return "–";
-  std::sort(seconds.begin(), seconds.end());
+  std::ranges::sort(seconds);
   const double middle = seconds[seconds.size() / 2];
   return middle < 60 ? fmt::format("{:.2g} s", middle) : fmt::format("{:.0f} s", middle);
 }

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "comparisons/reproduce/chart.h"
 
@@ -54,38 +53,21 @@ struct Projection {
   double y(const Vec3& p) const { return -p.dot(up); }
 };
 
-struct Limits {
-  double left = std::numeric_limits<double>::infinity(), right = -left, top = left, bottom = -left;
-
-  void include(double x, double y) {
-    left = std::min(left, x);
-    right = std::max(right, x);
-    top = std::min(top, y);
-    bottom = std::max(bottom, y);
-  }
-};
-
 const std::vector<Vec3>& places_of(const BodyPanel& panel) {
   return panel.undeformed ? panel.shape->rest : panel.shape->displaced;
 }
 
-Limits limits_of(const BodyPanel& panel, const Projection& to) {
-  Limits limits;
+Eigen::AlignedBox2d limits_of(const BodyPanel& panel, const Projection& to) {
+  Eigen::AlignedBox2d limits;
   for (const Vec3& p : places_of(panel))
-    if (p.allFinite()) limits.include(to.x(p), to.y(p));
+    if (p.allFinite()) limits.extend(Eigen::Vector2d(to.x(p), to.y(p)));
   return limits;
 }
-
-/// A facet that faces the viewer.
-struct Visible {
-  double depth;
-  std::string svg;
-};
 
 std::string facets_svg(const BodyPanel& panel, const Projection& to, double scale, double x0, double y0,
                        double largest) {
   const std::vector<Vec3>& at = places_of(panel);
-  std::vector<Visible> visible;
+  std::vector<std::pair<double, std::string>> visible;  // by depth
   for (const auto& f : panel.shape->facets) {
     const Vec3 normal = (at[f[2]] - at[f[0]]).cross(at[f[3]] == at[f[2]] ? at[f[1]] - at[f[0]] : at[f[3]] - at[f[1]]);
     if (!normal.allFinite() || normal.norm() == 0) continue;
@@ -99,13 +81,12 @@ std::string facets_svg(const BodyPanel& panel, const Projection& to, double scal
       displacement += (panel.shape->displaced[n] - panel.shape->rest[n]).norm() / 4;
     }
     const Colour colour = panel.undeformed ? Colour{214, 214, 214} : colour_at(displacement / largest);
-    visible.push_back({middle.dot(to.toward), fmt::format("<polygon points=\"{}\" fill=\"{}\"/>\n", points,
-                                                          hex(colour, 0.68 + 0.32 * std::abs(facing)))});
+    visible.emplace_back(middle.dot(to.toward), fmt::format("<polygon points=\"{}\" fill=\"{}\"/>\n", points,
+                                                            hex(colour, 0.68 + 0.32 * std::abs(facing))));
   }
-  std::stable_sort(visible.begin(), visible.end(),
-                   [](const Visible& a, const Visible& b) { return a.depth < b.depth; });
+  std::ranges::stable_sort(visible, [](const auto& a, const auto& b) { return a.first < b.first; });
   std::string out = "<g stroke=\"#1d2430\" stroke-width=\"0.3\" stroke-linejoin=\"round\">\n";
-  for (const Visible& v : visible) out += v.svg;
+  for (const auto& [depth, svg] : visible) out += svg;
   return out + "</g>\n";
 }
 
@@ -146,13 +127,10 @@ std::string reason_svg(const std::string& reason, double x, double y) {
 
 std::string bodies_svg(const std::vector<BodyPanel>& panels, int columns, const BodyView& view) {
   const Projection to(view);
-  double wide = 0, high = 0;
+  Eigen::Vector2d most = Eigen::Vector2d::Zero();
   for (const BodyPanel& panel : panels)
-    if (panel.shape) {
-      const Limits l = limits_of(panel, to);
-      wide = std::max(wide, l.right - l.left);
-      high = std::max(high, l.bottom - l.top);
-    }
+    if (panel.shape) most = most.cwiseMax(limits_of(panel, to).sizes());
+  const double wide = most.x(), high = most.y();
   // Flat bodies need flat panels.
   const double room = panel_width - 24;
   const double tall = wide > 0 ? std::clamp(room * high / wide, 60.0, panel_height) : panel_height;
@@ -169,27 +147,23 @@ std::string bodies_svg(const std::vector<BodyPanel>& panels, int columns, const 
       out += reason_svg(panels[i].missing.empty() ? "no result" : panels[i].missing, x, y + panel_title + tall / 2);
       continue;
     }
-    const Limits l = limits_of(panels[i], to);
-    out += facets_svg(panels[i], to, scale, x - scale * (l.left + l.right) / 2,
-                      y + panel_title + tall / 2 - scale * (l.top + l.bottom) / 2 + 6, largest);
+    const Eigen::Vector2d centre = scale * limits_of(panels[i], to).center();
+    out += facets_svg(panels[i], to, scale, x - centre.x(), y + panel_title + tall / 2 - centre.y() + 6, largest);
   }
   return out + colour_bar(width / 2 - 150, step * rows + 14, largest) + "</svg>\n";
 }
 
 std::vector<Vec3> layer_outline(const Shape& shape, int normal, const Vec3& point) {
   const int a = (normal + 1) % 3, b = (normal + 2) % 3;
-  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
-  for (const Vec3& p : shape.rest) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  const double tolerance = 1e-4 * (high - low).norm();
-  const Vec3 middle = (low + high) / 2;
+  Eigen::AlignedBox3d box;
+  for (const Vec3& p : shape.rest) box.extend(p);
+  const double tolerance = 1e-4 * box.diagonal().norm();
+  const Vec3 middle = box.center();
   std::vector<std::pair<double, Vec3>> around;
   for (std::size_t i = 0; i < shape.rest.size(); ++i)
     if (std::abs(shape.rest[i][normal] - point[normal]) < tolerance)
       around.emplace_back(std::atan2(shape.rest[i][b] - middle[b], shape.rest[i][a] - middle[a]), shape.displaced[i]);
-  std::stable_sort(around.begin(), around.end(), [](const auto& p, const auto& q) { return p.first < q.first; });
+  std::ranges::stable_sort(around, [](const auto& p, const auto& q) { return p.first < q.first; });
   std::vector<Vec3> outline;
   for (const auto& [angle, place] : around) outline.push_back(place);
   return outline;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 
 #include "problem/files/encoding.h"
@@ -39,8 +40,6 @@ struct Frame {
   double px(double value) const { return left + width * (value - x.from) / (x.to - x.from); }
   double py(double value) const { return top + height * (y.to - value) / (y.to - y.from); }
 };
-
-bool is_shape(const Curve& curve) { return curve.style == CurveStyle::shape || curve.style == CurveStyle::shape_fem; }
 
 Extent extent_of(const Chart& chart, bool of_x) {
   Extent range;
@@ -125,28 +124,27 @@ std::string marker_svg(double x, double y, int form, const std::string& paint) {
   }
 }
 
-/// Stroke of a curve's line; empty: none.
-std::string line_paint(const Curve& curve, const std::string& colour) {
-  switch (curve.style) {
-    case CurveStyle::theory:
-      return "stroke=\"#000000\" stroke-width=\"1.6\"";
-    case CurveStyle::fem:
-    case CurveStyle::shape_fem:
-      return "stroke=\"#000000\" stroke-width=\"1.6\" stroke-dasharray=\"7 4\"";
-    case CurveStyle::ours:
-    case CurveStyle::ours_bare:
-    case CurveStyle::shape:
-      return fmt::format("stroke=\"{}\" stroke-width=\"1.8\"", colour);
-    default:
-      return "";
-  }
-}
+/// How curves of a style are drawn; {} is their colour.
+struct Look {
+  const char *line = "", *marker = "";
+  bool ours = false;  ///< has a colour of its own
+};
+constexpr const char *theory_line = "stroke=\"#000000\" stroke-width=\"1.6\"",
+                     *fem_line = "stroke=\"#000000\" stroke-width=\"1.6\" stroke-dasharray=\"7 4\"",
+                     *own_line = "stroke=\"{}\" stroke-width=\"1.8\"", *own_marker = "fill=\"{}\"",
+                     *printed_marker = "fill=\"#ffffff\" stroke=\"#000000\" stroke-width=\"1.4\"";
 
-std::string marker_paint(const Curve& curve, const std::string& colour) {
-  if (curve.style == CurveStyle::printed) return "fill=\"#ffffff\" stroke=\"#000000\" stroke-width=\"1.4\"";
-  if (curve.style == CurveStyle::ours || curve.style == CurveStyle::ours_points)
-    return fmt::format("fill=\"{}\"", colour);
-  return "";
+Look look_of(CurveStyle style) {
+  static const std::map<CurveStyle, Look> looks = {{CurveStyle::theory, {theory_line}},
+                                                   {CurveStyle::fem, {fem_line}},
+                                                   {CurveStyle::shape_fem, {fem_line}},
+                                                   {CurveStyle::printed, {"", printed_marker}},
+                                                   {CurveStyle::ours, {own_line, own_marker, true}},
+                                                   {CurveStyle::ours_points, {"", own_marker, true}},
+                                                   {CurveStyle::ours_bare, {own_line, "", true}},
+                                                   {CurveStyle::shape, {own_line, "", true}},
+                                                   {CurveStyle::band, {}}};
+  return looks.at(style);
 }
 
 std::string line_svg(const Curve& curve, const Frame& f, const std::string& paint) {
@@ -158,7 +156,7 @@ std::string line_svg(const Curve& curve, const Frame& f, const std::string& pain
     down = here;
   }
   if (path.empty()) return "";
-  return fmt::format("<path d=\"{}{}\" fill=\"none\" {}/>\n", path, is_shape(curve) ? "z" : "", paint);
+  return fmt::format("<path d=\"{}{}\" fill=\"none\" {}/>\n", path, is_outline(curve) ? "z" : "", paint);
 }
 
 std::string band_svg(const Curve& curve, const Frame& f) {
@@ -178,32 +176,32 @@ std::string spread_svg(const CurvePoint& p, const Frame& f, double x, const std:
       up, down, x - 4, colour);
 }
 
-/// The number that a curve's colour and marker follow from: curves of one label look alike in all charts.
-std::size_t look_of(const std::vector<Chart>& charts, const std::string& label) {
+/// A curve's colour, line and marker; those of one label look alike in all charts.
+struct Paint {
+  std::string colour, line, marker;
+  int form;
+};
+
+Paint paint_of(const std::vector<Chart>& charts, const Curve& curve) {
   std::vector<std::string> known;
   for (const Chart& chart : charts)
-    for (const Curve& curve : chart.curves) {
-      const bool ours = curve.style == CurveStyle::ours || curve.style == CurveStyle::ours_points ||
-                        curve.style == CurveStyle::ours_bare || curve.style == CurveStyle::shape;
-      if (ours && std::find(known.begin(), known.end(), curve.label) == known.end()) known.push_back(curve.label);
-    }
-  return static_cast<std::size_t>(std::find(known.begin(), known.end(), label) - known.begin());
-}
-
-std::string colour_of(const std::vector<Chart>& charts, const Curve& curve) {
-  return curve_colours[look_of(charts, curve.label) % curve_colours.size()];
+    for (const Curve& c : chart.curves)
+      if (look_of(c.style).ours && std::ranges::find(known, c.label) == known.end()) known.push_back(c.label);
+  const auto number = std::ranges::find(known, curve.label) - known.begin();
+  const std::string colour = curve_colours[static_cast<std::size_t>(number) % curve_colours.size()];
+  const Look look = look_of(curve.style);
+  return {colour, fmt::format(fmt::runtime(look.line), colour), fmt::format(fmt::runtime(look.marker), colour),
+          static_cast<int>(number)};
 }
 
 std::string curve_svg(const std::vector<Chart>& charts, const Curve& curve, const Frame& f) {
   if (curve.style == CurveStyle::band) return band_svg(curve, f);
-  const std::string colour = colour_of(charts, curve), line = line_paint(curve, colour),
-                    marker = marker_paint(curve, colour);
+  const auto [colour, line, marker, form] = paint_of(charts, curve);
   std::string out = line.empty() ? "" : line_svg(curve, f, line);
   for (const CurvePoint& p : curve.points) {
     if (!std::isfinite(p.x) || !std::isfinite(p.y)) continue;
     out += spread_svg(p, f, f.px(p.x), colour);
-    if (!marker.empty())
-      out += marker_svg(f.px(p.x), f.py(p.y), static_cast<int>(look_of(charts, curve.label)), marker);
+    if (!marker.empty()) out += marker_svg(f.px(p.x), f.py(p.y), form, marker);
   }
   return out;
 }
@@ -216,7 +214,7 @@ std::string bars_svg(const std::vector<Chart>& charts, const Chart& chart, const
     for (const CurvePoint& p : chart.curves[c].points) {
       if (!std::isfinite(p.y)) continue;
       const double x = f.px(p.x) - 0.4 * slot + bar * static_cast<double>(c);
-      const std::string colour = colour_of(charts, chart.curves[c]);
+      const std::string colour = paint_of(charts, chart.curves[c]).colour;
       out += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"{}\"/>\n", x,
                          f.py(p.y), bar - 1, f.py(0) - f.py(p.y), colour) +
              spread_svg(p, f, x + bar / 2, "#333333");
@@ -225,14 +223,13 @@ std::string bars_svg(const std::vector<Chart>& charts, const Chart& chart, const
 }
 
 std::string sample_svg(const std::vector<Chart>& charts, const Curve& curve, bool bars, double x, double y) {
-  const std::string colour = colour_of(charts, curve), line = line_paint(curve, colour),
-                    marker = marker_paint(curve, colour);
+  const auto [colour, line, marker, form] = paint_of(charts, curve);
   if (bars || curve.style == CurveStyle::band)
     return fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"26\" height=\"11\" fill=\"{}\" fill-opacity=\"{}\"/>\n",
                        x, y - 10, bars ? colour : "#999999", bars ? 1 : 0.25);
   std::string out;
   if (!line.empty()) out += fmt::format("<path d=\"M{:.1f} {:.1f}h28\" fill=\"none\" {}/>\n", x, y - 4.5, line);
-  if (!marker.empty()) out += marker_svg(x + 14, y - 4.5, static_cast<int>(look_of(charts, curve.label)), marker);
+  if (!marker.empty()) out += marker_svg(x + 14, y - 4.5, form, marker);
   return out;
 }
 

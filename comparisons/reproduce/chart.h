@@ -23,6 +23,10 @@ struct Curve {
   std::vector<CurvePoint> points;
 };
 
+inline bool is_outline(const Curve& curve) {
+  return curve.style == CurveStyle::shape || curve.style == CurveStyle::shape_fem;
+}
+
 /// Range of an axis that is not that of its curves.
 struct AxisRange {
   std::optional<double> from = {}, to = {};

@@ -9,8 +9,6 @@
 namespace springproof {
 namespace {
 
-bool is_outline(const Curve& curve) { return curve.style == CurveStyle::shape || curve.style == CurveStyle::shape_fem; }
-
 /// Column name of a curve: letters, digits and underscores.
 std::string column_name(const Chart& chart, const Curve& curve, std::size_t charts) {
   std::string name;
@@ -23,27 +21,20 @@ std::string column_name(const Chart& chart, const Curve& curve, std::size_t char
 }
 
 bool has_spread(const Curve& curve) {
-  return std::any_of(curve.points.begin(), curve.points.end(),
-                     [](const CurvePoint& p) { return p.spread.has_value(); });
+  return std::ranges::any_of(curve.points, [](const CurvePoint& p) { return p.spread.has_value(); });
 }
 
 using Column = std::pair<std::string, std::vector<std::optional<double>>>;
 
+/// One column at least.
 std::string columns_csv(const std::vector<Column>& columns) {
-  std::string out;
   std::size_t lines = 0;
-  for (std::size_t c = 0; c < columns.size(); ++c) {
-    if (c > 0) out += ',';
-    out += csv_text(columns[c].first);
-    lines = std::max(lines, columns[c].second.size());
-  }
-  out += '\n';
-  for (std::size_t line = 0; line < lines; ++line) {
-    for (std::size_t c = 0; c < columns.size(); ++c) {
-      if (c > 0) out += ',';
-      if (line < columns[c].second.size()) out += csv_number(columns[c].second[line]);
-    }
-    out += '\n';
+  for (const auto& [name, values] : columns) lines = std::max(lines, values.size());
+  std::string out;
+  for (std::size_t line = 0; line <= lines; ++line) {  // the names, then the values
+    for (const auto& [name, values] : columns)
+      out += (line == 0 ? csv_text(name) : line <= values.size() ? csv_number(values[line - 1]) : "") + ',';
+    out.back() = '\n';
   }
   return out;
 }
@@ -60,8 +51,7 @@ std::vector<Column> shared_columns(const std::vector<Chart>& charts) {
       const std::string name = column_name(chart, curve, charts.size());
       Column y = {name, {}}, spread = {name + "_spread", {}};
       for (double x : places) {
-        const auto found =
-            std::find_if(curve.points.begin(), curve.points.end(), [&](const CurvePoint& p) { return p.x == x; });
+        const auto found = std::ranges::find_if(curve.points, [&](const CurvePoint& p) { return p.x == x; });
         const bool here = found != curve.points.end();
         y.second.push_back(here ? std::optional(found->y) : std::nullopt);
         spread.second.push_back(here ? found->spread : std::nullopt);
@@ -91,9 +81,8 @@ std::vector<Column> separate_columns(const std::vector<Chart>& charts) {
 }  // namespace
 
 std::string charts_csv(const std::vector<Chart>& charts) {
-  const bool outlines = std::any_of(charts.begin(), charts.end(), [](const Chart& chart) {
-    return std::any_of(chart.curves.begin(), chart.curves.end(), is_outline);
-  });
+  const bool outlines =
+      std::ranges::any_of(charts, [](const Chart& chart) { return std::ranges::any_of(chart.curves, is_outline); });
   return columns_csv(outlines ? separate_columns(charts) : shared_columns(charts));
 }
 

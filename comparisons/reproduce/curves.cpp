@@ -27,8 +27,7 @@ Curve against_measure(const PaperResults& results, const std::string& case_name,
     curve.points.push_back(
         {place->value, factor * row.value, row.spread ? std::optional(factor * *row.spread) : std::nullopt});
   }
-  std::stable_sort(curve.points.begin(), curve.points.end(),
-                   [](const CurvePoint& a, const CurvePoint& b) { return a.x < b.x; });
+  std::ranges::stable_sort(curve.points, [](const CurvePoint& a, const CurvePoint& b) { return a.x < b.x; });
   return curve;
 }
 

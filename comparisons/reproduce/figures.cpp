@@ -51,20 +51,22 @@ std::vector<PaperFigure> figures_named(const Paper& paper, const std::vector<std
   std::vector<std::string> known;
   for (const PaperFigure& figure : paper.figures) known.push_back(figure.id);
   for (const std::string& id : ids)
-    if (std::find(known.begin(), known.end(), id) == known.end())
+    if (std::ranges::find(known, id) == known.end())
       throw InputError(fmt::format("--figure: {} has no \"{}\" (allowed: {})", paper.name, id, fmt::join(known, ", ")));
   std::vector<PaperFigure> wanted;
   for (const PaperFigure& figure : paper.figures)
-    if (std::find(ids.begin(), ids.end(), figure.id) != ids.end()) wanted.push_back(figure);
+    if (std::ranges::find(ids, figure.id) != ids.end()) wanted.push_back(figure);
   return wanted;
 }
 
 std::vector<BodyPlan> body_grid(const std::string& case_name,
                                 const std::vector<std::pair<std::string, std::string>>& models,
-                                const std::vector<double>& poisson_ratios) {
+                                const std::vector<double>& poisson_ratios, bool undeformed) {
   std::vector<BodyPlan> all;
-  for (const auto& [label, model] : models)
+  for (const auto& [label, model] : models) {
+    if (undeformed) all.push_back({"undeformed", case_name, model, poisson_ratios.front(), {}, true});
     for (double nu : poisson_ratios) all.push_back({label, case_name, model, nu});
+  }
   return all;
 }
 

@@ -2,6 +2,7 @@
 // and what must hold for it to be called reproduced.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -84,13 +85,12 @@ struct BodyPlan {
 
 /// One row of the table of figures.
 struct PaperFigure {
-  std::string paper;               ///< "golec_2019"
   std::string id;                  ///< "8", "table2"
   std::string what;                ///< what it shows
   std::vector<std::string> cases;  ///< built-in cases that give its numbers; empty: it cannot be redone
   std::string reason;              ///< why it differs, or cannot be redone
   std::vector<Claim> claims = {};
-  std::vector<Chart> (*charts)(const PaperResults&) = nullptr;
+  std::function<std::vector<Chart>(const PaperResults&)> charts = nullptr;
   std::vector<BodyPlan> bodies = {};
   std::vector<std::string> cracks = {};  ///< models of the first case whose cracks are drawn
   int columns = 3;                       ///< of the bodies
@@ -126,9 +126,9 @@ const Paper& paper_named(const std::string& name);
 /// @throws InputError naming the figures of the paper.
 std::vector<PaperFigure> figures_named(const Paper& paper, const std::vector<std::string>& ids);
 
-/// The bodies of `models` (rows, each {label, model}) at `poisson_ratios` (columns).
+/// The bodies of `models` (rows, each {label, model}) at `poisson_ratios` (columns), after one that is undeformed.
 std::vector<BodyPlan> body_grid(const std::string& case_name,
                                 const std::vector<std::pair<std::string, std::string>>& models,
-                                const std::vector<double>& poisson_ratios);
+                                const std::vector<double>& poisson_ratios, bool undeformed = false);
 
 }  // namespace springproof

@@ -5,7 +5,6 @@
 namespace springproof {
 namespace {
 
-const std::string golec = "golec_2019";
 const std::string compression_20 = "golec_2019/tables/table2_compression_20",
                   tension_20 = "golec_2019/tables/table3_tension_20", shear_20 = "golec_2019/tables/table4_shear_20",
                   torsion_45 = "golec_2019/tables/table5_torsion_45deg", beam_stiff = "golec_2019/figures/fig_5_10MPa",
@@ -52,10 +51,6 @@ Chart beam_chart(const PaperResults& results, const std::string& case_name, doub
   return chart;
 }
 
-std::vector<Chart> beam_charts(const PaperResults& results) {
-  return {beam_chart(results, beam_stiff, 1e7, "E = 10 MPa"), beam_chart(results, beam_soft, 2e6, "E = 2 MPa")};
-}
-
 /// Outlines of a layer of the cube, one chart per Poisson's ratio; a and b: the axes drawn.
 std::vector<Chart> layer_charts(const PaperResults& results, const std::string& case_name, int normal, int a, int b) {
   const char* names[] = {"x [m]", "y [m]", "z [m]"};
@@ -75,26 +70,17 @@ std::vector<Chart> layer_charts(const PaperResults& results, const std::string& 
   return charts;
 }
 
-std::vector<Chart> shear_layers(const PaperResults& results) { return layer_charts(results, shear_20, 1, 0, 2); }
-std::vector<Chart> torsion_layers(const PaperResults& results) { return layer_charts(results, torsion_45, 2, 0, 1); }
-
-PaperFigure not_redone(const std::string& id, const std::string& what, const std::string& reason) {
-  return {golec, id, what, {}, reason};
-}
-
 PaperFigure bodies_of(const std::string& id, const std::string& what, const std::string& case_name,
                       const std::vector<std::pair<std::string, std::string>>& models, std::vector<Claim> claims,
                       const std::string& reason) {
-  PaperFigure figure{golec, id, what, {case_name}, reason, std::move(claims)};
-  figure.bodies = body_grid(case_name, models, golec_nus);
-  return figure;
+  return {id, what, {case_name}, reason, std::move(claims), nullptr, body_grid(case_name, models, golec_nus)};
 }
 
 constexpr double hundredth_of_a_percent = 1e-4;
 
 PaperFigure printed_table(const std::string& id, const std::string& what, const std::vector<std::string>& cases,
                           double last_digit, const std::string& reason) {
-  PaperFigure figure{golec, id, what, cases, reason};
+  PaperFigure figure{id, what, cases, reason};
   figure.last_digit = last_digit;
   figure.percent = last_digit == hundredth_of_a_percent;
   return figure;
@@ -112,32 +98,29 @@ Claim tip_of(const std::string& model, const std::string& case_name, const Cells
 PaperFigure beam_curves() {
   const Cells coarse = {24, 4, 4}, fine = {48, 8, 8};
   const double stiff_tip = euler_bernoulli(2.4, 1e7), soft_tip = euler_bernoulli(2.4, 2e6);
-  PaperFigure figure{
-      golec,
+  return {
       "5",
       "Beam bent by its weight: HybMSS, HybMSS-FD and (6.1)",
       {beam_stiff, beam_soft},
       "the paper prints no density: 1000 kg/m3 is taken. (6.1) is linear, so at E = 2 MPa it is far beyond "
       "what a solid does; 4 cells are too stiff in bending (docs/papers.md #6 and section 4). " +
-          wrinkled};
-  figure.claims = {
-      tip_of("hybmss", beam_stiff, fine, "HybMSS follows the finite elements on the finer mesh, E = 10 MPa")
-          .near_fem(0.05),
-      tip_of("hybmss", beam_soft, fine, "HybMSS follows the finite elements on the finer mesh, E = 2 MPa")
-          .near_fem(0.05),
-      tip_of("hybmss", beam_stiff, fine, "HybMSS on the finer mesh is near (6.1), E = 10 MPa").near(stiff_tip, 0.05),
-      tip_of("hybmss", beam_soft, fine, "HybMSS on the finer mesh is near (6.1), E = 2 MPa").near(soft_tip, 0.05),
-      tip_of("hybmss_fd", beam_stiff, coarse, "HybMSS-FD on the coarser mesh is near (6.1), E = 10 MPa")
-          .near(stiff_tip, 0.05),
-      tip_of("hybmss_fd", beam_stiff, fine, "HybMSS-FD has a state on the finer mesh, E = 10 MPa").near_fem(1),
-  };
-  figure.charts = beam_charts;
-  return figure;
+          wrinkled,
+      {tip_of("hybmss", beam_stiff, fine, "HybMSS follows the finite elements on the finer mesh, E = 10 MPa")
+           .near_fem(0.05),
+       tip_of("hybmss", beam_soft, fine, "HybMSS follows the finite elements on the finer mesh, E = 2 MPa")
+           .near_fem(0.05),
+       tip_of("hybmss", beam_stiff, fine, "HybMSS on the finer mesh is near (6.1), E = 10 MPa").near(stiff_tip, 0.05),
+       tip_of("hybmss", beam_soft, fine, "HybMSS on the finer mesh is near (6.1), E = 2 MPa").near(soft_tip, 0.05),
+       tip_of("hybmss_fd", beam_stiff, coarse, "HybMSS-FD on the coarser mesh is near (6.1), E = 10 MPa")
+           .near(stiff_tip, 0.05),
+       tip_of("hybmss_fd", beam_stiff, fine, "HybMSS-FD has a state on the finer mesh, E = 10 MPa").near_fem(1)},
+      [](const PaperResults& r) -> std::vector<Chart> {
+        return {beam_chart(r, beam_stiff, 1e7, "E = 10 MPa"), beam_chart(r, beam_soft, 2e6, "E = 2 MPa")};
+      }};
 }
 
 PaperFigure beam_bodies() {
-  PaperFigure figure{golec,
-                     "6",
+  PaperFigure figure{"6",
                      "Beam under gravity, E = 2 MPa: HybMSS-FD wrinkles, HybMSS does not",
                      {beam_soft},
                      wrinkled + "; that is the paper's statement"};
@@ -163,14 +146,16 @@ PaperFigure compressed_bodies() {
                    wrinkled + "; the paper's pictures of it are of a wrinkled state");
 }
 
-PaperFigure layer_figure(const std::string& id, const std::string& what, const std::string& case_name,
-                         std::vector<Chart> (*charts)(const PaperResults&), double bound, const std::string& reason) {
-  PaperFigure figure{golec, id, what, {case_name}, reason};
-  figure.claims = {
-      close_to_fem(case_name, "section_distance", bound, "HybMSS is close to FEM (mean distance in the layer, of 5 m)")
-          .at(golec_nus)};
-  figure.charts = charts;
-  return figure;
+PaperFigure layer_figure(const std::string& id, const std::string& what, const std::string& case_name, int normal,
+                         int a, int b, double bound, const std::string& reason) {
+  return {
+      id,
+      what,
+      {case_name},
+      reason,
+      {close_to_fem(case_name, "section_distance", bound, "HybMSS is close to FEM (mean distance in the layer, of 5 m)")
+           .at(golec_nus)},
+      [=](const PaperResults& results) { return layer_charts(results, case_name, normal, a, b); }};
 }
 
 PaperFigure layer_distances() {
@@ -191,9 +176,9 @@ const std::string close_words = "HybMSS is close to FEM (displacements)",
 
 std::vector<PaperFigure> golec_2019_figures() {
   return {
-      not_redone("table1", "Notations", "nothing to compute; two names are exchanged (docs/papers.md #1)"),
-      not_redone("1", "An element of the model: 12 edges, 12 face and 4 cube diagonals", "a drawing"),
-      not_redone("2", "The five test cases", "a drawing"),
+      {"table1", "Notations", {}, "nothing to compute; two names are exchanged (docs/papers.md #1)"},
+      {"1", "An element of the model: 12 edges, 12 face and 4 cube diagonals", {}, "a drawing"},
+      {"2", "The five test cases", {}, "a drawing"},
       compressed_bodies(),
       bodies_of("4", "Stretched by 20 %", tension_20, all_three,
                 {close_to_fem(tension_20, "displacement_error", 0.05, close_words).at(golec_nus)},
@@ -214,7 +199,7 @@ std::vector<PaperFigure> golec_2019_figures() {
       bodies_of("7", "Sheared by 20 %", shear_20, hybrid_and_fem,
                 {close_to_fem(shear_20, "displacement_error", 0.05, close_words).at(golec_nus)},
                 "the printed springs have no equilibrium at ν = 0 beyond 93 % of the load (docs/papers.md #12)"),
-      layer_figure("8", "Sheared by 20 %: outline of the middle layer", shear_20, shear_layers, 0.02,
+      layer_figure("8", "Sheared by 20 %: outline of the middle layer", shear_20, 1, 0, 2, 0.02,
                    "the printed springs have no equilibrium at ν = 0 beyond 93 % of the load (docs/papers.md #12); the "
                    "layer's inner nodes are not kept, only its outline is drawn"),
       printed_table("table5", "Torque on the top plate in torsion",
@@ -224,11 +209,11 @@ std::vector<PaperFigure> golec_2019_figures() {
       bodies_of("9", "Twisted by 45 degrees", torsion_45, hybrid_and_fem,
                 {close_to_fem(torsion_45, "displacement_error", 0.05, close_words).at(golec_nus)},
                 "at ν = 0 springs built from E as printed are too soft (docs/papers.md #3)"),
-      layer_figure("10", "Twisted by 45 degrees: outline of the middle layer", torsion_45, torsion_layers, 0.11,
+      layer_figure("10", "Twisted by 45 degrees: outline of the middle layer", torsion_45, 2, 0, 1, 0.11,
                    "at ν = 0 springs built from E as printed are 0.1 m off (docs/papers.md #3 and #12)"),
       layer_distances(),
-      not_redone("11", "Time of 1,000 iterations of compression against the number of volumes", times_of_theirs),
-      not_redone("12", "Time of 300,000 iterations of the beam against the number of volumes", times_of_theirs),
+      {"11", "Time of 1,000 iterations of compression against the number of volumes", {}, times_of_theirs},
+      {"12", "Time of 300,000 iterations of the beam against the number of volumes", {}, times_of_theirs},
       printed_table("table6", "Nodes and springs of the meshes",
                     {"golec_2019/tables/table6_cubes", "golec_2019/tables/table6_beams"}, 1e-9,
                     "with face diagonals the paper counts those of each cell separately; merged as its sec. 5.4 says "

@@ -1,4 +1,6 @@
 // Figures of Kot et al. (2014).
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -41,8 +43,7 @@ void add_moduli(const PaperResults& results, const std::string& case_name, const
     if (S && E) measured.points.push_back({S->value, E->value / calibrated * value});
   }
   for (Curve* curve : {&estimate, &measured})
-    std::stable_sort(curve->points.begin(), curve->points.end(),
-                     [](const CurvePoint& a, const CurvePoint& b) { return a.x < b.x; });
+    std::ranges::stable_sort(curve->points, [](const CurvePoint& a, const CurvePoint& b) { return a.x < b.x; });
   chart.curves.push_back(std::move(estimate));
   chart.curves.push_back(std::move(measured));
 }
@@ -84,6 +85,13 @@ std::vector<Chart> difference_chart(const PaperResults& results) {
   return {chart};
 }
 
+using Charts = std::function<std::vector<Chart>(const PaperResults&)>;
+
+PaperFigure chart_figure(const std::string& id, const std::string& what, const std::vector<std::string>& cases,
+                         const Charts& charts, const std::vector<Claim>& claims, const std::string& reason) {
+  return {id, what, cases, reason, claims, charts};
+}
+
 /// Profile of component 12 along the line; the values near the force run off the axes.
 std::vector<Chart> profile(const PaperResults& results, bool stress, const std::string& model) {
   constexpr int xy = 3;
@@ -103,11 +111,6 @@ std::vector<Chart> profile(const PaperResults& results, bool stress, const std::
   return {chart};
 }
 
-std::vector<Chart> stress_s18(const PaperResults& r) { return profile(r, true, "S18"); }
-std::vector<Chart> stress_s11(const PaperResults& r) { return profile(r, true, "S11"); }
-std::vector<Chart> strain_s18(const PaperResults& r) { return profile(r, false, "S18"); }
-std::vector<Chart> strain_s11(const PaperResults& r) { return profile(r, false, "S11"); }
-
 std::vector<Chart> deviations(const PaperResults& results, const std::string& quantity) {
   Chart chart{"", "component", "mean deviation from Kelvin [%]", {}};
   chart.categories = {"11", "22", "33", "12", "23", "13"};
@@ -122,9 +125,6 @@ std::vector<Chart> deviations(const PaperResults& results, const std::string& qu
   }
   return {chart};
 }
-
-std::vector<Chart> strain_deviations(const PaperResults& r) { return deviations(r, "strain"); }
-std::vector<Chart> stress_deviations(const PaperResults& r) { return deviations(r, "stress"); }
 
 constexpr double beam_length = 4, beam_modulus = 250;
 
@@ -150,27 +150,6 @@ Chart deflections(const PaperResults& results, const std::string& case_name, dou
       ours("superposed cubes, 2 across", "msm_18", low),
       ours("superposed cubes, 4 across", "msm_18", high)};
   return chart;
-}
-
-std::vector<Chart> small_deflections(const PaperResults& results) { return {deflections(results, bar_small, 0.1)}; }
-
-std::vector<Chart> large_deflections(const PaperResults& results) {
-  Chart chart = deflections(results, bar_large, 4.1);
-  chart.curves.erase(chart.curves.begin());  // (25) does not hold there
-  return {chart};
-}
-
-PaperFigure kot_figure(const std::string& id, const std::string& what, const std::vector<std::string>& cases,
-                       const std::string& reason) {
-  return {"kot_2014", id, what, cases, reason};
-}
-
-PaperFigure chart_figure(const std::string& id, const std::string& what, const std::vector<std::string>& cases,
-                         std::vector<Chart> (*charts)(const PaperResults&), std::vector<Claim> claims,
-                         const std::string& reason) {
-  PaperFigure figure{"kot_2014", id, what, cases, reason, std::move(claims)};
-  figure.charts = charts;
-  return figure;
 }
 
 /// Of the networks whose ⟨S⟩, counted over the whole block, is 16 to 24.
@@ -238,16 +217,25 @@ std::vector<PaperFigure> line_figures() {
       {"S18", "S15",
        "S11"}}.alike(0);
   stress.against = "line.strain.all";
+  const auto along = [&](const std::string& id, const std::string& model, bool of_stress) {
+    return chart_figure(
+        id, fmt::format("{} along the line, {}", of_stress ? "Stress σ₁₂" : "Strain ε₁₂", model), both,
+        [=](const PaperResults& r) { return profile(r, of_stress, model); },
+        {deviation_of(model, of_stress ? "stress" : "strain")}, reason);
+  };
   return {
-      chart_figure("6", "Stress σ₁₂ along the line, S18", both, stress_s18, {deviation_of("S18", "stress")}, reason),
-      chart_figure("7", "Stress σ₁₂ along the line, S11", both, stress_s11, {deviation_of("S11", "stress")}, reason),
-      chart_figure("8", "Strain ε₁₂ along the line, S18", both, strain_s18, {deviation_of("S18", "strain")}, reason),
-      chart_figure("9", "Strain ε₁₂ along the line, S11", both, strain_s11, {deviation_of("S11", "strain")}, reason),
-      chart_figure("10", "Mean deviation of the strain components", {kelvin_held}, strain_deviations, {strain},
-                   "no numbers are printed; nearly half of the growth to S11 is (20), which makes networks too soft "
-                   "(docs/papers.md #17)"),
-      chart_figure("11", "Mean deviation of the stress components", {kelvin_held}, stress_deviations, {cubic, stress},
-                   "no numbers are printed"),
+      along("6", "S18", true),
+      along("7", "S11", true),
+      along("8", "S18", false),
+      along("9", "S11", false),
+      chart_figure(
+          "10", "Mean deviation of the strain components", {kelvin_held},
+          [](const PaperResults& r) { return deviations(r, "strain"); }, {strain},
+          "no numbers are printed; nearly half of the growth to S11 is (20), which makes networks too soft "
+          "(docs/papers.md #17)"),
+      chart_figure(
+          "11", "Mean deviation of the stress components", {kelvin_held},
+          [](const PaperResults& r) { return deviations(r, "stress"); }, {cubic, stress}, "no numbers are printed"),
   };
 }
 
@@ -259,7 +247,8 @@ PaperFigure small_force() {
     return tip_of_bar(bar_small, model, words);
   };
   return chart_figure(
-      "13", "Deflection of a bar by a small force: four networks and (25)", {bar_small}, small_deflections,
+      "13", "Deflection of a bar by a small force: four networks and (25)", {bar_small},
+      [](const PaperResults& r) { return std::vector{deflections(r, bar_small, 0.1)}; },
       {of("msm_centred", "cubic networks depend only weakly on the resolution").alike(0.05),
        of("msm_centred", "cubic networks follow (25)").near(tip, 0.05),
        of("random medium", "runs of medium random networks scatter").scattering(0.05).on(high).by_the_paper(),
@@ -274,7 +263,12 @@ PaperFigure small_force() {
 
 PaperFigure large_force() {
   PaperFigure figure = chart_figure(
-      "14", "A bar bent by a large force: four networks", {bar_large}, large_deflections,
+      "14", "A bar bent by a large force: four networks", {bar_large},
+      [](const PaperResults& r) {
+        Chart chart = deflections(r, bar_large, 4.1);
+        chart.curves.erase(chart.curves.begin());  // (25) does not hold there
+        return std::vector{chart};
+      },
       {tip_of_bar(bar_large, "msm_centred", "cubic networks agree with each other and with the solid").near_fem(0.1),
        tip_of_bar(bar_large, "random medium", "medium random networks are near them").near_fem(0.1).on({16, 4, 4}),
        tip_of_bar(bar_large, "random low", "low resolution random networks are near them").near_fem(0.1).on({8, 2, 2})},
@@ -291,9 +285,11 @@ PaperFigure large_force() {
 
 PaperFigure cracks() {
   const std::string drying = "kot_2014/fig_15";
-  PaperFigure figure = kot_figure("15", "Cracks on a drying cylinder, seen from above", {drying},
-                                  "the paper states neither drying nor breaking: the protocol is ours "
-                                  "(docs/fracture.md)");
+  PaperFigure figure{"15",
+                     "Cracks on a drying cylinder, seen from above",
+                     {drying},
+                     "the paper states neither drying nor breaking: the protocol is ours "
+                     "(docs/fracture.md)"};
   figure.claims = {
       Claim{"cracks of 14 springs follow the axes of their lattice (mean of cos 4φ, 0 without a direction)",
             drying,
@@ -312,11 +308,11 @@ PaperFigure cracks() {
 }  // namespace
 
 std::vector<PaperFigure> kot_2014_figures() {
-  std::vector<PaperFigure> all = {kot_figure("1", "Elementary cell of a cubic lattice", {}, "a drawing"),
-                                  kot_figure("2", "Random point distribution", {}, "a drawing")};
+  std::vector<PaperFigure> all = {{"1", "Elementary cell of a cubic lattice", {}, "a drawing"},
+                                  {"2", "Random point distribution", {}, "a drawing"}};
   for (const std::vector<PaperFigure>& some : {moduli_figures(), line_figures()})
     all.insert(all.end(), some.begin(), some.end());
-  all.push_back(kot_figure("12", "A segment of a bent beam", {}, "a drawing"));
+  all.push_back({"12", "A segment of a bent beam", {}, "a drawing"});
   all.push_back(small_force());
   all.push_back(large_force());
   all.push_back(cracks());

@@ -51,37 +51,10 @@ std::vector<Chart> random_chart(const PaperResults& results) {
                     curve("ours, ⟨S⟩ = 22", "ours S22")});
 }
 
-PaperFigure sketch(const std::string& id, const std::string& what) { return {"kot_2015", id, what, {}, "a drawing"}; }
-
-PaperFigure nu_figure(const std::string& id, const std::string& what, const std::string& case_name,
-                      std::vector<Chart> (*charts)(const PaperResults&), std::vector<Claim> claims,
-                      const std::string& reason) {
-  PaperFigure figure{"kot_2015", id, what, {case_name}, reason, std::move(claims)};
-  figure.charts = charts;
-  return figure;
-}
-
 PaperFigure shapes_figure(const std::string& id, const std::string& what, const std::string& case_name,
                           std::vector<BodyPlan> bodies, int columns, const BodyView& view, std::vector<Claim> claims,
                           const std::string& reason) {
-  PaperFigure figure{"kot_2015", id, what, {case_name}, reason, std::move(claims)};
-  figure.bodies = std::move(bodies);
-  figure.columns = columns;
-  figure.view = view;
-  return figure;
-}
-
-/// The undeformed body, then a model at each Poisson's ratio.
-std::vector<BodyPlan> row_of_bodies(const std::string& case_name, const std::string& label, const std::string& model,
-                                    const std::vector<double>& poisson_ratios, bool rest) {
-  std::vector<BodyPlan> all;
-  if (rest) all.push_back({"undeformed", case_name, model, poisson_ratios.front(), {}, true});
-  for (double nu : poisson_ratios) all.push_back({label, case_name, model, nu});
-  return all;
-}
-
-void append_bodies(const std::vector<BodyPlan>& more, std::vector<BodyPlan>& all) {
-  all.insert(all.end(), more.begin(), more.end());
+  return {id, what, {case_name}, reason, std::move(claims), nullptr, std::move(bodies), {}, columns, view};
 }
 
 Claim any_nu(const std::string& words, const std::string& case_name, const std::string& model, double within) {
@@ -93,15 +66,15 @@ Claim any_nu(const std::string& words, const std::string& case_name, const std::
 PaperFigure cubic_ratios() {
   Claim at_points = any_nu("by (29) at points of which most touch the surface", cubic_nu, "published", -1);
   at_points.measure = "moduli.poisson_ratio_of_fields";
-  PaperFigure figure = nu_figure(
-      "7", "Poisson's ratio in cubic lattices, obtained against wanted", cubic_nu, cubic_chart,
-      {any_nu("as published, on the paper's block: any ν", cubic_nu, "published", 0.01),
-       any_nu("symmetric dispersion: any ν", cubic_surface, "symmetric", 0.01), at_points,
-       any_nu("as published, 4 and 6 cells across", cubic_surface, "published", -1)},
-      "nodes on the surface disperse by the wrong share as published, which costs up to 0.08 at 4 cells across "
-      "(docs/papers.md, section 6, Fig. 7)");
-  figure.cases.push_back(cubic_surface);
-  return figure;
+  return {"7",
+          "Poisson's ratio in cubic lattices, obtained against wanted",
+          {cubic_nu, cubic_surface},
+          "nodes on the surface disperse by the wrong share as published, which costs up to 0.08 at 4 cells across "
+          "(docs/papers.md, section 6, Fig. 7)",
+          {any_nu("as published, on the paper's block: any ν", cubic_nu, "published", 0.01),
+           any_nu("symmetric dispersion: any ν", cubic_surface, "symmetric", 0.01), at_points,
+           any_nu("as published, 4 and 6 cells across", cubic_surface, "published", -1)},
+          cubic_chart};
 }
 
 const BodyView from_the_side = {{0, -1, 0.15}, {0, 0, 1}};
@@ -109,9 +82,8 @@ const std::string own_body = "the paper's body is not available: a similar one i
 
 PaperFigure compressed_block() {
   const std::vector<double> ratios = {-0.9, 0, 0.25, 0.47};
-  std::vector<BodyPlan> bodies = row_of_bodies(block_75, "eMSM as published", "published", ratios, false);
-  append_bodies(row_of_bodies(block_75, "eMSM, symmetric", "symmetric", ratios, false), bodies);
-  append_bodies(row_of_bodies(block_75, "FEM", "fem", ratios, false), bodies);
+  const std::vector<BodyPlan> bodies = body_grid(
+      block_75, {{"eMSM as published", "published"}, {"eMSM, symmetric", "symmetric"}, {"FEM", "fem"}}, ratios);
   const Claim shape{
       "the shape at ν = 0 and 0.25 is the solid's (displacements)", block_75, "displacement_error", {"published"}};
   Claim volume =
@@ -157,8 +129,8 @@ PaperFigure pulled_arm() {
 
 PaperFigure rabbit_ratios() {
   const std::vector<double> ratios = {-0.5, 0, 0.25, 0.4};
-  std::vector<BodyPlan> bodies = row_of_bodies(rabbit_nus, "random eMSM", "random 1321", ratios, true);
-  append_bodies(row_of_bodies(rabbit_nus, "FEM", "fem", ratios, true), bodies);
+  const std::vector<BodyPlan> bodies =
+      body_grid(rabbit_nus, {{"random eMSM", "random 1321"}, {"FEM", "fem"}}, ratios, true);
   const auto head = [](const std::string& words) {
     return Claim{words, rabbit_nus, "displacement.head_18.x", {"random 1321"}}.alike(0.1);
   };
@@ -171,8 +143,7 @@ PaperFigure rabbit_ratios() {
 
 PaperFigure stretched_hand() {
   const std::vector<double> ratios = {0.49, 0.25, 0, -0.5, -0.9};
-  std::vector<BodyPlan> bodies = row_of_bodies(hand, "random eMSM", "random", ratios, true);
-  append_bodies(row_of_bodies(hand, "FEM", "fem", ratios, true), bodies);
+  const std::vector<BodyPlan> bodies = body_grid(hand, {{"random eMSM", "random"}, {"FEM", "fem"}}, ratios, true);
   Claim volume =
       Claim{"random eMSM changes its volume as the solid does", hand, "volume_change", {"random"}}.at_most(0.01);
   volume.target = Claim::finite_elements;
@@ -185,18 +156,21 @@ PaperFigure stretched_hand() {
 
 std::vector<PaperFigure> kot_2015_figures() {
   std::vector<PaperFigure> all = {
-      sketch("1", "Hexagonal lattice"),
-      sketch("2", "Cubic lattice"),
-      sketch("3", "Hexagonal lattice with angular springs"),
-      sketch("4", "Momentum flow through a simple model"),
-      sketch("5", "Momentum dispersion"),
-      sketch("6", "Dispersive momentum flow"),
+      {"1", "Hexagonal lattice", {}, "a drawing"},
+      {"2", "Cubic lattice", {}, "a drawing"},
+      {"3", "Hexagonal lattice with angular springs", {}, "a drawing"},
+      {"4", "Momentum flow through a simple model", {}, "a drawing"},
+      {"5", "Momentum dispersion", {}, "a drawing"},
+      {"6", "Dispersive momentum flow", {}, "a drawing"},
       cubic_ratios(),
-      nu_figure("8", "Poisson's ratio in random networks, obtained against wanted", random_nu, random_chart,
-                {any_nu("with nodal volumes and calibration: any ν", random_nu, "ours S15", 0.01),
-                 any_nu("as published: any ν", random_nu, "published S15", 0.01)},
-                "as published the network relaxes the dispersed pressure: up to 0.05 off, and E up to 32 % high near "
-                "1/2 (docs/papers.md #18 and section 6, Fig. 8)"),
+      {"8",
+       "Poisson's ratio in random networks, obtained against wanted",
+       {random_nu},
+       "as published the network relaxes the dispersed pressure: up to 0.05 off, and E up to 32 % high near 1/2 "
+       "(docs/papers.md #18 and section 6, Fig. 8)",
+       {any_nu("with nodal volumes and calibration: any ν", random_nu, "ours S15", 0.01),
+        any_nu("as published: any ν", random_nu, "published S15", 0.01)},
+       random_chart},
   };
   for (auto* figure : {compressed_block, rabbit_resolutions, pulled_arm, rabbit_ratios, stretched_hand})
     all.push_back(figure());

@@ -11,10 +11,10 @@
 
 #include "comparisons/judge/differences.h"
 #include "comparisons/results/crack_picture.h"
+#include "comparisons/results/records_json.h"
 #include "problem/files/encoding.h"
 #include "problem/files/files.h"
 #include "problem/system/input_error.h"
-#include "problem/system/json.h"
 
 namespace springproof {
 namespace {
@@ -102,31 +102,11 @@ std::map<std::string, std::vector<Picture>> read_pictures(const std::filesystem:
   }
 }
 
-using nlohmann::json;
-
-std::optional<double> number_if_any(const json& j) {
-  return j.is_null() ? std::nullopt : std::optional(j.get<double>());
-}
-
-LineTensors tensors_of(const json& values) {
-  LineTensors out;
-  for (const json& value : values) out.push_back(number_if_any(value).value_or(std::nan("")));
-  return out;
-}
-
-LineRecord line_of(const json& j) {
-  LineRecord line;
-  line.model = j.at("model");
-  line.poisson_ratio = j.at("poisson_ratio");
-  line.cells = j.at("cells").get<Cells>();
-  line.first = j.at("first");
-  line.last = j.at("last");
-  line.distance = tensors_of(j.at("distance"));
-  line.strain = tensors_of(j.at("strain"));
-  line.stress = tensors_of(j.at("stress"));
-  line.exact_strain = tensors_of(j.at("exact_strain"));
-  line.exact_stress = tensors_of(j.at("exact_stress"));
-  return line;
+/// Results have null for what is no number.
+void nan_for_null(json& j) {
+  if (j.is_null()) j = std::nan("");
+  if (j.is_structured())
+    for (json& item : j) nan_for_null(item);
 }
 
 /// Of [[published]] the remark says why ours differs; of [[expect]] with source "published" there is none.
@@ -140,7 +120,7 @@ std::vector<PrintedValue> printed_of(const json& result, const std::string& case
                    j.at("measure"),
                    j.at("unit"),
                    j.at(printed),
-                   number_if_any(j.at("computed")),
+                   j.at("computed").get<std::optional<double>>(),
                    {},
                    j.at("where"),
                    j.value("remark", "")};
@@ -182,16 +162,18 @@ void PaperResults::add(const std::filesystem::path& folder) try {
   const json document = json::parse(text_of_file(folder / "results.json"));
   for (std::size_t i = 0; i < found.cases.size(); ++i) {
     const json& result = document.at("cases").at(i);
-    ReadCase read;
+    json lines = result.at("lines");
+    ReadCase one;
     for (const Row& row : found.rows)
-      if (row.case_name == found.cases[i]) read.rows.push_back(row);
-    read.printed = printed_of(result, found.cases[i], read.rows);
-    for (const json& line : result.at("lines")) read.lines.push_back(line_of(line));
+      if (row.case_name == found.cases[i]) one.rows.push_back(row);
+    one.printed = printed_of(result, found.cases[i], one.rows);
+    nan_for_null(lines);
+    lines.get_to(one.lines);
     for (const json& run : result.at("runs"))
       if (!run.at("ok").get<bool>())
-        read.failed.push_back({run.at("model"), run.at("poisson_ratio"), run.at("message")});
-    read.folder = folder;
-    cases_[found.cases[i]] = std::move(read);
+        one.failed.push_back({run.at("model"), run.at("poisson_ratio"), run.at("message")});
+    one.folder = folder;
+    cases_[found.cases[i]] = std::move(one);
   }
 } catch (const json::exception& e) {
   refuse_results(folder, e.what());
@@ -201,21 +183,12 @@ PaperResults::PaperResults(const std::vector<std::filesystem::path>& folders) {
   for (const std::filesystem::path& folder : folders) add(folder);
 }
 
-const PaperResults::ReadCase* PaperResults::find(const std::string& case_name) const {
+bool PaperResults::has(const std::string& case_name) const { return cases_.contains(name_in_results(case_name)); }
+
+const PaperResults::ReadCase& PaperResults::read(const std::string& case_name) const {
+  static const ReadCase none;
   const auto found = cases_.find(name_in_results(case_name));
-  return found == cases_.end() ? nullptr : &found->second;
-}
-
-const std::vector<Row>& PaperResults::rows(const std::string& case_name) const {
-  static const std::vector<Row> none;
-  const ReadCase* found = find(case_name);
-  return found ? found->rows : none;
-}
-
-const std::vector<LineRecord>& PaperResults::lines(const std::string& case_name) const {
-  static const std::vector<LineRecord> none;
-  const ReadCase* found = find(case_name);
-  return found ? found->lines : none;
+  return found == cases_.end() ? none : found->second;
 }
 
 const Row* PaperResults::row(const std::string& case_name, const std::string& model, double poisson_ratio,
@@ -230,14 +203,12 @@ const Row* PaperResults::row(const std::string& case_name, const std::string& mo
 
 std::vector<PrintedValue> PaperResults::printed(const std::string& case_name, const std::string& where) const {
   std::vector<PrintedValue> all;
-  const ReadCase* found = find(case_name);
-  if (!found) return all;
-  for (const PrintedValue& v : found->printed) {
+  for (const PrintedValue& v : read(case_name).printed) {
     const bool longer =
         v.where.size() > where.size() && std::isdigit(static_cast<unsigned char>(v.where[where.size()]));
     if (v.where.starts_with(where) && !longer) all.push_back(v);
   }
-  std::stable_sort(all.begin(), all.end(), [](const PrintedValue& a, const PrintedValue& b) {
+  std::ranges::stable_sort(all, [](const PrintedValue& a, const PrintedValue& b) {
     return std::pair(a.poisson_ratio, cell_count(a.cells)) < std::pair(b.poisson_ratio, cell_count(b.cells));
   });
   return all;
@@ -249,7 +220,7 @@ std::string PaperResults::cracks(const std::string& case_name, const std::string
     if (row.model == model && (!finest || cell_count(row.cells) > cell_count(finest->cells))) finest = &row;
   if (!finest) return "";
   const std::filesystem::path file =
-      find(case_name)->folder / crack_file(case_name.substr(case_name.rfind('/') + 1), *finest);
+      read(case_name).folder / crack_file(case_name.substr(case_name.rfind('/') + 1), *finest);
   std::string svg = text_of_file(file);
   if (!svg.empty() && !is_crack_svg(svg))
     throw InputError(
@@ -260,9 +231,7 @@ std::string PaperResults::cracks(const std::string& case_name, const std::string
 }
 
 std::string PaperResults::failure(const std::string& case_name, const std::string& model, double poisson_ratio) const {
-  const ReadCase* found = find(case_name);
-  if (!found) return "";
-  for (const FailedRun& run : found->failed)
+  for (const FailedRun& run : read(case_name).failed)
     if (run.model == model && same_poisson_ratio(run.poisson_ratio, poisson_ratio))
       return run.message.substr(0, run.message.find(':'));
   return "";
@@ -272,7 +241,7 @@ const std::vector<Picture>& PaperResults::pictures(const std::string& case_name)
   const std::string key = name_in_results(case_name);
   const auto known = pictures_.find(key);
   if (known != pictures_.end()) return known->second;
-  for (auto& [name, all] : read_pictures(find(case_name)->folder)) pictures_[name] = std::move(all);
+  for (auto& [name, all] : read_pictures(read(case_name).folder)) pictures_[name] = std::move(all);
   return pictures_[key];
 }
 

@@ -35,11 +35,11 @@ class PaperResults {
   /// @throws InputError if a folder holds no results of `springproof compare`.
   explicit PaperResults(const std::vector<std::filesystem::path>& folders);
 
-  bool has(const std::string& case_name) const { return find(case_name) != nullptr; }
+  bool has(const std::string& case_name) const;
 
   /// Rows of a case in the order of its file; empty if there is no such case.
-  const std::vector<Row>& rows(const std::string& case_name) const;
-  const std::vector<LineRecord>& lines(const std::string& case_name) const;
+  const std::vector<Row>& rows(const std::string& case_name) const { return read(case_name).rows; }
+  const std::vector<LineRecord>& lines(const std::string& case_name) const { return read(case_name).lines; }
 
   /// The row of a model; without cells that of the coarsest lattice.  Null: none.
   const Row* row(const std::string& case_name, const std::string& model, double poisson_ratio,
@@ -74,7 +74,7 @@ class PaperResults {
     std::filesystem::path folder;
   };
   void add(const std::filesystem::path& folder);
-  const ReadCase* find(const std::string& case_name) const;  ///< null: none
+  const ReadCase& read(const std::string& case_name) const;  ///< empty: there is none
   const std::vector<Picture>& pictures(const std::string& case_name) const;
 
   std::map<std::string, ReadCase> cases_;                         ///< by their last folder and name

@@ -52,7 +52,7 @@ std::string bodies_csv(const PaperResults& results, const PaperFigure& figure) {
   std::string out = "case,measure,model,poisson_ratio,cells,value,spread,finite_elements,unit\n";
   std::vector<std::pair<std::string, std::string>> wanted;
   for (const Claim& claim : figure.claims)
-    if (std::find(wanted.begin(), wanted.end(), std::pair(claim.case_name, claim.measure)) == wanted.end())
+    if (std::ranges::find(wanted, std::pair(claim.case_name, claim.measure)) == wanted.end())
       wanted.emplace_back(claim.case_name, claim.measure);
   for (const auto& [case_name, measure] : wanted)
     for (const Row& row : results.rows(case_name))

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "comparisons/report/assets.h"
+#include "comparisons/report/report.h"
 #include "comparisons/reproduce/reproduce.h"
 #include "problem/files/encoding.h"
 
@@ -151,37 +151,19 @@ std::string reproduce_page(const std::vector<DrawnFigure>& drawn, const Paper& p
     rows += overview_row(d);
     if (has_section(d)) sections += figure_html(d);
   }
-  return fmt::format(R"(<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; img-src data:">
-<title>springproof: {0} redone</title>
-<link rel="icon" href="data:,">
-<style>
-{1}
-.drawing {{ background: #fff; border-radius: 8px; margin: 8px 0; text-align: center; }}
-.cases th, .values td:first-child {{ white-space: nowrap; }}
-.drawing svg {{ max-width: 100%; height: auto; }}
-</style>
-</head>
-<body>
-<header>
-<p class="brand">springproof</p>
-<h1>The figures and tables of {0}, redone</h1>
-<p class="lead">{2}</p>
-<p>Printed values are open markers or columns named so, theory is solid black, our finite elements are dashed, everything else is computed with mass-spring models here. A printed value agrees within {3:g} % or one unit of its last digit; a figure agrees if the paper's statements about it hold for our numbers. Pages named docs/ are in the source tree of springproof.</p>
+  const std::string cite = xml_escaped(paper.short_cite);
+  const std::string header = fmt::format(
+      R"(<h1>The figures and tables of {}, redone</h1>
+<p class="lead">{}</p>
+<p>Printed values are open markers or columns named so, theory is solid black, our finite elements are dashed, everything else is computed with mass-spring models here. A printed value agrees within {:g} % or one unit of its last digit; a figure agrees if the paper's statements about it hold for our numbers. Pages named docs/ are in the source tree of springproof.</p>
 <div class="scroll"><table class="cases"><thead><tr><th>figure</th><th>what it shows</th><th>verdict</th><th>in numbers</th></tr></thead><tbody>
-{4}</tbody></table></div>
-</header>
-<main>
-{5}</main>
-</body>
-</html>
+{}</tbody></table></div>
 )",
-                     xml_escaped(paper.short_cite), report_assets::style_css, xml_escaped(paper.cite),
-                     100 * printed_tolerance, rows, sections);
+      cite, xml_escaped(paper.cite), 100 * printed_tolerance, rows);
+  return plain_page(cite + " redone", header, sections,
+                    ".drawing { background: #fff; border-radius: 8px; margin: 8px 0; text-align: center; }\n"
+                    ".cases th, .values td:first-child { white-space: nowrap; }\n"
+                    ".drawing svg { max-width: 100%; height: auto; }\n");
 }
 
 }  // namespace springproof

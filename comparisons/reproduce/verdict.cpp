@@ -1,4 +1,4 @@
-#include "comparisons/reproduce/verdict.h"
+#include "comparisons/reproduce/reproduce.h"
 
 #include <fmt/format.h>
 
@@ -9,9 +9,7 @@ namespace springproof {
 namespace {
 
 bool asked_for(const Claim& claim, const Row& row) {
-  const auto has = [](const auto& list, const auto& same) {
-    return list.empty() || std::any_of(list.begin(), list.end(), same);
-  };
+  const auto has = [](const auto& list, const auto& same) { return list.empty() || std::ranges::any_of(list, same); };
   return row.measure == claim.measure && (!claim.cells || row.cells == *claim.cells) &&
          has(claim.models, [&](const std::string& model) { return model == row.model; }) &&
          has(claim.poisson_ratios, [&](double nu) { return same_poisson_ratio(nu, row.poisson_ratio); });
@@ -58,8 +56,8 @@ bool ascends(const Row& a, const Row& b) { return b.value >= a.value - a.spread.
 
 /// The largest over the smallest, in size.
 double ratio_of(const std::vector<Row>& rows) {
-  const auto [low, high] = std::minmax_element(
-      rows.begin(), rows.end(), [](const Row& a, const Row& b) { return std::abs(a.value) < std::abs(b.value); });
+  const auto [low, high] = std::ranges::minmax_element(
+      rows, [](const Row& a, const Row& b) { return std::abs(a.value) < std::abs(b.value); });
   return std::abs(high->value) / std::abs(low->value);
 }
 
@@ -135,8 +133,8 @@ std::string word_of(std::size_t hold, std::size_t partly, std::size_t all) {
 void judge_claims(const PaperResults& results, const PaperFigure& figure, FigureVerdict& verdict) {
   for (const Claim& claim : figure.claims) verdict.claims.push_back(judge_claim(results, claim));
   const auto count = [&](auto state) {
-    return static_cast<std::size_t>(std::count_if(verdict.claims.begin(), verdict.claims.end(),
-                                                  [&](const ClaimVerdict& c) { return c.holds == state; }));
+    return static_cast<std::size_t>(
+        std::ranges::count_if(verdict.claims, [&](const ClaimVerdict& c) { return c.holds == state; }));
   };
   const std::size_t hold = count(ClaimVerdict::yes), judged = verdict.claims.size() - count(ClaimVerdict::not_judged);
   verdict.word = word_of(hold, count(ClaimVerdict::partly), judged);
@@ -154,8 +152,8 @@ FigureVerdict judge_figure(const PaperResults& results, const PaperFigure& figur
   FigureVerdict verdict;
   verdict.values = judge_values(results, figure);
   if (figure.is_table()) {
-    const auto agree = static_cast<std::size_t>(
-        std::count_if(verdict.values.begin(), verdict.values.end(), [](const ValueVerdict& v) { return v.agrees; }));
+    const auto agree =
+        static_cast<std::size_t>(std::ranges::count_if(verdict.values, [](const ValueVerdict& v) { return v.agrees; }));
     verdict.word = word_of(agree, 0, verdict.values.size());
     verdict.sentence = fmt::format("{} of {} printed values", agree, verdict.values.size());
     return verdict;

@@ -85,6 +85,12 @@ std::vector<fs::path> find_cases(const std::vector<std::string>& names) {
   return cases;
 }
 
+fs::path find_case(const std::string& name) {
+  const std::vector<fs::path> found = find_cases({name});
+  if (found.size() > 1) throw InputError(fmt::format("{} is a folder of {} cases; name one", name, found.size()));
+  return found.front();
+}
+
 Experiment only(const std::vector<double>& wanted, Experiment e) {
   if (wanted.empty()) return e;
   const auto left_out = [&](double nu) {

@@ -14,6 +14,10 @@ namespace springproof {
 /// @throws InputError if there is no case of a name.
 std::vector<std::filesystem::path> find_cases(const std::vector<std::string>& names);
 
+/// The one case of a name.
+/// @throws InputError if there is none, or a folder of several.
+std::filesystem::path find_case(const std::string& name);
+
 /// "golec_2019/compression" for a built-in case, the file's stem for others.
 std::string case_name(const std::filesystem::path& file);
 

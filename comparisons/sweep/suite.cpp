@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "comparisons/prepare/prepared_case.h"
-#include "comparisons/report/stability_words.h"
+#include "comparisons/report/headline_cases.h"
 #include "comparisons/run/case_run.h"
 #include "comparisons/run/expected_runs.h"
 #include "comparisons/run/prepare.h"

@@ -14,7 +14,6 @@
 #include "comparisons/judge/judge.h"
 #include "comparisons/judge/validation.h"
 #include "comparisons/reference/vtu_output.h"
-#include "comparisons/report/gltf.h"
 #include "comparisons/report/headline.h"
 #include "comparisons/report/report.h"
 #include "comparisons/results/crack_picture.h"

@@ -1,4 +1,4 @@
-#include "comparisons/commands/export/body_alone.h"
+#include "comparisons/commands/export/export_request.h"
 
 #include <fmt/format.h>
 
@@ -49,7 +49,7 @@ Experiment body_alone(const ExportRequest& request) {
   e.models = {named_model(request.model.empty() ? recommended_model().name : request.model)};
   e.patches = held_rules(request);
   for (PatchRule& rule : rules_of("--load", "loaded", request.load)) e.patches.push_back(std::move(rule));
-  if (request.cells.empty()) e.body.voxel_counts = {request.voxels.value_or(default_voxels)};
+  if (!request.cells) e.body.voxel_counts = {request.voxels.value_or(default_voxels)};
   return e;
 }
 

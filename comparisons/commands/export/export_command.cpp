@@ -8,26 +8,15 @@
 
 #include "comparisons/calculix/cross_check.h"
 #include "comparisons/calculix/deck.h"
+#include "comparisons/calculix/opinions.h"
 #include "comparisons/commands/commands.h"
-#include "comparisons/commands/export/body_alone.h"
-#include "comparisons/commands/export/export_engines.h"
 #include "comparisons/commands/export/export_request.h"
-#include "comparisons/prepare/case_checks.h"
-#include "comparisons/prepare/springs_of_case.h"
 #include "comparisons/run/prepare.h"
-#include "comparisons/sweep/find_cases.h"
 #include "comparisons/sweep/status.h"
-#include "meshes/mesher/mesher.h"
-#include "meshes/mesher/mesher_exchange.h"
-#include "meshes/patches/select_patches.h"
-#include "meshes/regions/mark_regions.h"
 #include "msm/exchange/lammps.h"
 #include "msm/laws/capabilities.h"
-#include "msm/models.h"
 #include "msm/parameters/made_of.h"
-#include "msm/topology/cubic_lattice.h"
 #include "problem/files/files.h"
-#include "problem/system/nearest_name.h"
 #include "problem/system/number_checks.h"
 #include "problem/system/streams.h"
 
@@ -35,29 +24,6 @@ namespace springproof {
 namespace {
 
 namespace fs = std::filesystem;
-
-Cells cells_of_option(const std::vector<int>& cells) {
-  return cells.empty() ? Cells{0, 0, 0} : Cells{cells[0], cells[1], cells[2]};
-}
-
-bool is_body(const std::string& name) {
-  const auto& endings = body_file_endings();
-  return std::find(endings.begin(), endings.end(), extension_of(name)) != endings.end();
-}
-
-Experiment read_case(const ExportRequest& request) {
-  const std::string& name = request.what;
-  const std::vector<fs::path> found = find_cases({name});
-  if (found.size() > 1) throw InputError(fmt::format("{} is a folder of {} cases; name one", name, found.size()));
-  Experiment experiment = read_experiment(found.front());
-  const bool holds_branches = request.to == "springs" && fs::path(request.out).extension() != ".vtu";
-  if (experiment.relaxation.acts() && !holds_branches)
-    throw InputError(experiment.relaxation_where,
-                     fmt::format("material.relaxation: has no place in this file, --to {}, whose springs would not "
-                                 "relax (allowed with branches: --to springs, as .json or .npz)",
-                                 request.to));
-  return experiment;
-}
 
 /// Before the work.
 void require_writable(const fs::path& file) {
@@ -87,24 +53,19 @@ int export_calculix(const ExportRequest& request) {
       !request.hold.empty() || !request.load.empty())
     throw InputError("--to calculix: a deck has the case's elements and material (allowed: --poisson-ratio, --cells)");
   const Experiment experiment = at_wanted(read_case(request), request.moduli.poisson_ratio);
-  calculix::require_counterpart(experiment);
+  calculix::counterpart(experiment);
   const IsotropicMaterial& material = experiment.materials.front();
   const std::string file = request.out.empty() ? experiment.name + ".inp" : request.out;
   require_writable(file);
   Status status(false);
   const Status::Working working(status, request.what);
   const PreparedCase prepared = prepare(experiment);
-  if (experiment.body.is_voxels() && !request.cells.empty())
+  const Body& body = experiment.body;
+  if (body.is_voxels() && request.cells)
     throw InputError("--cells: is for bodies of hexahedra; the tetrahedra of this one have [reference] edge_m");
-  const Cells cells = request.cells.empty() && !experiment.body.is_voxels() ? experiment.body.cells.front()
-                                                                            : cells_of_option(request.cells);
-  Mesh mesh = experiment.body.is_voxels()
-                  ? *prepared.body.tetrahedra.back()
-                  : mesh_geo(prepared.body.geo, experiment.body.size, cells, {}, volumes_of(experiment.regions));
-  if (!experiment.body.is_voxels()) {
-    mark_regions(experiment.regions, 1, mesh);
-    select_whole_facets(experiment.patches, mesh);
-  }
+  const Mesh mesh = body.is_voxels()
+                        ? *prepared.body.tetrahedra.back()
+                        : mesh_of_cells(experiment, prepared.body.geo, request.cells.value_or(body.cells.front()));
   const calculix::Deck deck = calculix::make_deck(experiment, material, mesh);
   std::ostringstream out;
   calculix::write(deck, out);
@@ -112,118 +73,6 @@ int export_calculix(const ExportRequest& request) {
   to_stdout("{}: {} nodes, {} elements {}, nu = {:g}{}\n", file, deck.mesh.nodes.rows(), deck.mesh.elements.size(),
             deck.element, material.poisson_ratio, words_of(deck.experiment.regions));
   return 0;
-}
-
-/// The model of the case with this label, or a row of the table; by default the case's first.
-ModelChoice chosen_model(const Experiment& e, const std::string& name) {
-  std::vector<std::string> known;
-  for (const ModelChoice& m : e.models) known.push_back(m.label);
-  const auto at = std::find(known.begin(), known.end(), name);
-  if (at != known.end()) return e.models[static_cast<std::size_t>(at - known.begin())];
-  if (name.empty() && !e.models.empty()) return e.models.front();
-  for (const ModelRow& row : model_table()) {
-    if (row.name == name) return named_model(name);
-    if (std::find(known.begin(), known.end(), row.name) == known.end()) known.push_back(row.name);
-  }
-  throw InputError(fmt::format("--model: unknown model '{}' (allowed: {}){}", name, fmt::join(known, ", "),
-                               did_you_mean(name, known)));
-}
-
-/// The case with one material, one model and one resolution, without what is computed of it.
-Experiment one_of_each(Experiment e, const ExportRequest& request) {
-  if (request.moduli.youngs_modulus || request.scale != 1 || !request.size.empty() || !request.hold.empty() ||
-      !request.load.empty())
-    throw InputError(
-        fmt::format("{}: a case has its own material, patches and size (allowed: --poisson-ratio, --model, --cells, "
-                    "--voxels)",
-                    request.what));
-  e = at_wanted(e, request.moduli.poisson_ratio);
-  std::erase_if(e.models, is_external);
-  e.models = {chosen_model(e, request.model)};
-  if (!e.body.cells.empty()) e.body.cells.resize(1);
-  if (e.body.voxel_edges.size() > 1) e.body.voxel_edges.resize(1);
-  if (e.body.voxel_counts.size() > 1) e.body.voxel_counts.resize(1);
-  if (e.body.accuracies.size() > 1) e.body.accuracies.resize(1);
-  if (request.voxels) {
-    e.body.accuracies.clear();
-    if (!e.body.is_voxels()) throw InputError("--voxels: is for bodies of voxels; this one has --cells NX NY NZ");
-    e.body.voxel_edges.clear();
-    e.body.voxel_counts = {*request.voxels};
-  }
-  const bool measured = resolve(e.models.front()).coarsened.value_or(e.body.coarsened);
-  if (measured) require_one_material(e, "export of coarsened cells");
-  if (e.body.accuracies.empty() && !measured) {  // cells are refined for the loads, and measured on the supports
-    e.loads.clear();
-    e.load_locations.clear();
-  }
-  e.probes.clear();
-  e.measures.clear();
-  e.elements.clear();
-  e.reference.elements.clear();
-  return e;
-}
-
-/// @throws InputError for cells that are boxes where the other program gets springs or nodes of cubes.
-void require_cubes(const ExportRequest& request, const Mesh& mesh) {
-  if (!mesh.grid || has_cubes(*mesh.grid)) return;
-  const Vec3& edge = mesh.grid->spacing;
-  throw InputError(fmt::format(
-      "{}: the cells are {:.6g} x {:.6g} x {:.6g} m (allowed with --to {}: cubes, --cells NX NY NZ in proportion "
-      "to the size; boxes of hybmss_avg with --to springs)",
-      request.what, edge[0], edge[1], edge[2], request.to));
-}
-
-/// The vertices of --carry, in the body's lengths.
-/// @throws InputError if they are not where the body is.
-Mesh carried_vertices(const ExportRequest& request, const PreparedCase& prepared) {
-  const Body& of = prepared.experiment.body;
-  Mesh vertices =
-      mesh_body({.file = request.carry, .kind = {.vertices = true}, .scale = of.is_script() ? 1 : of.scale}).mesh;
-  const NodalVectors& body = prepared.lattices.front().mesh->nodes;
-  const Eigen::RowVector3d low = body.colwise().minCoeff(), high = body.colwise().maxCoeff(), size = high - low,
-                           least = vertices.nodes.colwise().minCoeff(), most = vertices.nodes.colwise().maxCoeff();
-  const double outside = std::max((low - least).maxCoeff(), (most - high).maxCoeff());
-  if (outside > 0.1 * size.norm())
-    throw InputError(fmt::format(
-        "--carry: {} lies from ({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, {:.4g}, {:.4g}) m, the body from ({:.4g}, {:.4g}, "
-        "{:.4g}) to ({:.4g}, {:.4g}, {:.4g}) m (allowed: vertices of the body, in its units)",
-        request.carry, least[0], least[1], least[2], most[0], most[1], most[2], low[0], low[1], low[2], high[0],
-        high[1], high[2]));
-  return vertices;
-}
-
-/// `cut`: of cut cells where the model has them and the case does not say otherwise.
-SpringsFile springs_of(const ExportRequest& request, bool cut = false) {
-  const Experiment of_case = is_body(request.what) ? Experiment() : read_case(request);
-  if (!cut && request.to != "jolt")  // each of its springs has a stiffness of its own
-    require_one_material(of_case, fmt::format("export --to {} of whole cubes", request.to));
-  Experiment e = is_body(request.what) ? body_alone(request) : one_of_each(of_case, request);
-  if (!request.cells.empty()) {
-    if (e.body.is_voxels()) throw InputError("--cells: is for bodies of hexahedra; this one has --voxels N");
-    e.body.cells = {cells_of_option(request.cells)};
-  }
-  if (!cut) {
-    if (!e.body.accuracies.empty())
-      throw InputError(
-          fmt::format("{}: body.accuracy: cells of several sizes are cut cells (allowed: --to springs without "
-                      "--whole-cubes, or --voxels N)",
-                      request.what));
-    e.body.cut = e.body.coarsened = false;
-    for (ModelChoice& m : e.models)
-      for (const char* of_cut_cells : {"cut", "coarsened"}) m.options.erase(of_cut_cells);
-  }
-  Status status(false);
-  const Status::Working working(status, request.what);
-  const PreparedCase prepared = prepare_lattices(e);
-  if (of_case.body.is_voxels()) check_supports(of_case, *prepared.body.tetrahedra.back());
-  if (!e.patches.empty() && is_body(request.what)) refuse_whole_surface(prepared);
-  const Topology of = prepared.models.front().row.topology;
-  if (request.to != "springs" && (of == Topology::cells || of == Topology::centres))
-    require_cubes(request, *prepared.lattices.front().mesh);
-  if (request.carry.empty()) return springs_of(prepared);
-  if (request.to != "springs") throw InputError(fmt::format("--carry: is for --to springs, not {}", request.to));
-  const Mesh vertices = carried_vertices(request, prepared);
-  return springs_of(prepared, &vertices);
 }
 
 fs::path out_or(const ExportRequest& request, const std::string& ending) {
@@ -279,8 +128,7 @@ std::string groups_of(const SpringsFile& springs) {
   std::string out;
   std::size_t count = 0;
   for (const auto& [name, nodes] : springs.patches) {
-    const bool plain =
-        std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) || c == '_'; });
+    const bool plain = std::ranges::all_of(name, [](unsigned char c) { return std::isalnum(c) || c == '_'; });
     if (!plain || nodes.empty() || ++count > most_groups) continue;
     out += "group " + name + " id";
     for (const int n : nodes) out += fmt::format(" {}", n + 1);
@@ -310,12 +158,6 @@ int export_lammps(const ExportRequest& request) {
                        groups_of(springs) + "run 0\n");
   report(data, springs);
   return 0;
-}
-
-int export_engine(const ExportRequest& request) {
-  const SpringsFile springs = springs_of(for_engine(request));
-  return export_to_engine(request, springs,
-                          is_body(request.what) ? held_patches(request) : held_patches(read_case(request)));
 }
 
 /// A form of export: a row.
@@ -356,8 +198,12 @@ void ExportCommand::add_options(CLI::App& command) {
   command.add_option("--out", r.out, "file to write (default: NAME.inp, NAME.json, NAME.data, NAME.xml here)");
   command.add_option("--poisson-ratio,--nu", r.moduli.poisson_ratio, "of a case: one of its own (default: its first)");
   command
-      .add_option("--cells", r.cells,
-                  "cells along each side of a body of hexahedra (default: the case's first resolution)")
+      .add_option_function<std::vector<int>>(
+          "--cells",
+          [&r](const std::vector<int>& n) {
+            r.cells = {n[0], n[1], n[2]};
+          },
+          "cells along each side of a body of hexahedra (default: the case's first resolution)")
       ->expected(3)
       ->check(CLI::Range(1, 1000));
   command.add_option("--model", r.model,

@@ -37,7 +37,7 @@ void add_moduli(CLI::App& command, Moduli& moduli) {
   const auto keys = keys_of("material");
   for (const ModulusName& modulus : modulus_names) {
     const std::string name = modulus.key;
-    const Key& key = *std::find_if(keys.begin(), keys.end(), [&](const Key& k) { return k.name == name; });
+    const Key& key = *std::ranges::find_if(keys, [&](const Key& k) { return k.name == name; });
     const std::string shorter = modulus.symbol ? modulus.symbol : "";
     const std::string alias = shorter.empty() ? "" : (shorter.size() == 1 ? ",-" : ",--") + shorter;
     command.add_option(option_named(name.substr(0, name.rfind("_Pa"))) + alias, moduli.*modulus.member,

@@ -326,11 +326,9 @@ function convergencePoints(result, measure, model, nu, against) {
 /// Lines of one model at every nu, or of every model at one nu.
 function convergenceLines(result, choice, measure, against) {
   const [kind, which] = [choice.slice(0, choice.indexOf(':')), choice.slice(choice.indexOf(':') + 1)];
-  if (kind === 'nu')
-    return models.map(model => ({name: model, model, nu: Number(which)}))
-      .map(line => ({...line, points: convergencePoints(result, measure, line.model, line.nu, against)}));
-  return result.nus.map((nu, i) => ({name: settingText(result, nu), model: which, nu, color: rampColor(i, result.nus.length)}))
-    .map(line => ({...line, points: convergencePoints(result, measure, line.model, line.nu, against)}));
+  const lines = kind === 'nu' ? models.map(model => ({name: model, model, nu: Number(which)}))
+    : result.nus.map((nu, i) => ({name: settingText(result, nu), model: which, nu, color: rampColor(i, result.nus.length)}));
+  return lines.map(line => ({...line, points: convergencePoints(result, measure, line.model, line.nu, against)}));
 }
 
 const rampColor = (i, n) => viridisCss(n > 1 ? 0.12 + 0.73 * i / (n - 1) : 0.4);

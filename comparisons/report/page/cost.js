@@ -150,21 +150,29 @@ function drawFront(ctx, panel) {
   const stair = front.flatMap(([x, y], i) => i === 0 ? [[x, box.top], [x, y]] : [[x, front[i - 1][1]], [x, y]]);
   if (stair.length === 0) return;
   stair.push([box.left + box.width, stair[stair.length - 1][1]]);
+  ctx.lineJoin = 'round';
+  strokeFront(ctx, stair);
+}
+
+function strokeFront(ctx, points) {
   ctx.strokeStyle = '#f2b632';
   ctx.globalAlpha = 0.55;
   ctx.lineWidth = 6;
-  ctx.lineJoin = 'round';
-  strokePath(ctx, stair);
+  strokePath(ctx, points);
   ctx.globalAlpha = 1;
+}
+
+function strokeModel(ctx, model, points) {
+  ctx.strokeStyle = modelStyle(model).color;
+  ctx.lineWidth = 1.5;
+  ctx.setLineDash(isFem(model) ? [5, 3] : []);
+  strokePath(ctx, points);
+  ctx.setLineDash([]);
 }
 
 function drawCostLine(ctx, panel, model) {
   const line = costLine(panel.points, model), {color, marker} = modelStyle(model), {paper, soft} = colors();
-  ctx.strokeStyle = color;
-  ctx.lineWidth = 1.5;
-  ctx.setLineDash(isFem(model) ? [5, 3] : []);
-  strokePath(ctx, line.map(point => placeOf(panel, point)));
-  ctx.setLineDash([]);
+  strokeModel(ctx, model, line.map(point => placeOf(panel, point)));
   for (const point of line) {
     ctx.strokeStyle = point.below ? soft : color;
     ctx.fillStyle = point.below ? paper : color;
@@ -193,20 +201,11 @@ function drawCostLegend(ctx, width) {
   for (const model of costModels())
     next(model, (x, y) => {
       const {color, marker} = modelStyle(model);
-      ctx.strokeStyle = ctx.fillStyle = color;
-      ctx.lineWidth = 1.5;
-      ctx.setLineDash(isFem(model) ? [5, 3] : []);
-      strokePath(ctx, [[x, y], [x + 22, y]]);
-      ctx.setLineDash([]);
+      strokeModel(ctx, model, [[x, y], [x + 22, y]]);
+      ctx.fillStyle = color;
       drawMarker(ctx, marker, x + 11, y);
     });
-  next('the front', (x, y) => {
-    ctx.strokeStyle = '#f2b632';
-    ctx.globalAlpha = 0.55;
-    ctx.lineWidth = 6;
-    strokePath(ctx, [[x, y], [x + 22, y]]);
-    ctx.globalAlpha = 1;
-  });
+  next('the front', (x, y) => strokeFront(ctx, [[x, y], [x + 22, y]]));
 }
 
 function drawCost(ctx, width, cost) {

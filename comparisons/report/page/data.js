@@ -136,18 +136,10 @@ function seconds(t) {
   return t < 60 ? number(t, 2) + ' s' : `${Math.floor(t / 60)} min ${Math.round(t % 60)} s`;
 }
 
-/// The unit that suits a length of this size.
-function lengthUnit(size) {
-  for (const [factor, unit] of [[1, 'm'], [1e3, 'mm'], [1e6, 'µm'], [1e9, 'nm']])
-    if (size * factor >= 1) return {factor, unit};
-  return {factor: 1, unit: 'm'};
-}
-
-/// The unit that suits a stress of this size.
-function stressUnit(size) {
-  for (const [factor, unit] of [[1e-9, 'GPa'], [1e-6, 'MPa'], [1e-3, 'kPa']]) if (size * factor >= 1) return {factor, unit};
-  return {factor: 1, unit: 'Pa'};
-}
+/// The unit that suits a length, or a stress, of this size.
+const fittingUnit = (size, units, si) => units.map(([factor, unit]) => ({factor, unit})).find(({factor}) => size * factor >= 1) || {factor: 1, unit: si};
+const lengthUnit = size => fittingUnit(size, [[1, 'm'], [1e3, 'mm'], [1e6, 'µm'], [1e9, 'nm']], 'm');
+const stressUnit = size => fittingUnit(size, [[1e-9, 'GPa'], [1e-6, 'MPa'], [1e-3, 'kPa']], 'Pa');
 
 // ---- cells and measures
 

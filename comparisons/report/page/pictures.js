@@ -176,18 +176,17 @@ function deformedSurface(shape) {
     objects.push(new THREE.LineSegments(lines, new THREE.LineBasicMaterial({color: 0x000000, transparent: true, opacity: 0.22})));
   }
   for (const object of objects) object.frustumCulled = false;
-  return {body, position, objects, place(amplification, displacement) {
+  const place = (amplification, displacement) => {
     for (let i = 0; i < position.array.length; ++i) position.array[i] = shape.rest[i] + amplification * displacement[i];
     position.needsUpdate = true;
     if (smooth) geometry.computeVertexNormals();
-  }, paint(amplification, colouring, top) {
+  };
+  return {body, position, objects, place, paint(amplification, colouring, top) {
     const values = colouring && colouring.values(shape);
-    for (let i = 0; i < position.array.length; ++i)
-      position.array[i] = shape.rest[i] + amplification * shape.displacement[i];
+    place(amplification, shape.displacement);
     for (let i = 0; i < shape.rest.length / 3; ++i)
       color.array.set(values && isNumber(values[i]) ? colourOf(colouring, values[i], top) : [0.72, 0.72, 0.72], 3 * i);
-    position.needsUpdate = color.needsUpdate = true;
-    if (smooth) geometry.computeVertexNormals();
+    color.needsUpdate = true;
     geometry.computeBoundingSphere();   // the pointer's ray looks there first
   }};
 }

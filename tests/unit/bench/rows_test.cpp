@@ -18,25 +18,25 @@ BenchRow row(double value, double baseline, Target target) {
 
 TEST(BenchRows, SpeedUpsAreBaselineOverOurs) {
   EXPECT_DOUBLE_EQ(row(2, 10, at_least(5)).judged(), 5);
-  EXPECT_EQ(outcome(row(2, 10, at_least(5))), Outcome::met);
-  EXPECT_EQ(outcome(row(2, 9.9, at_least(5))), Outcome::missed);
+  EXPECT_EQ(outcome(row(2, 10, at_least(5))), "met");
+  EXPECT_EQ(outcome(row(2, 9.9, at_least(5))), "missed");
 }
 
 TEST(BenchRows, OverheadsAreOursOverBaseline) {
   EXPECT_DOUBLE_EQ(row(3, 2, at_most(1.6)).judged(), 1.5);
-  EXPECT_EQ(outcome(row(3, 2, at_most(1.6))), Outcome::met);
-  EXPECT_EQ(outcome(row(3, 2, at_most(1.4))), Outcome::missed);
+  EXPECT_EQ(outcome(row(3, 2, at_most(1.6))), "met");
+  EXPECT_EQ(outcome(row(3, 2, at_most(1.4))), "missed");
 }
 
 TEST(BenchRows, WithoutBaselineTheValueIsJudged) {
-  EXPECT_EQ(outcome(row(13, 0, at_most(13))), Outcome::met);
-  EXPECT_EQ(outcome(row(14, 0, at_most(13))), Outcome::missed);
-  EXPECT_EQ(outcome(row(14, 0, {})), Outcome::information);
+  EXPECT_EQ(outcome(row(13, 0, at_most(13))), "met");
+  EXPECT_EQ(outcome(row(14, 0, at_most(13))), "missed");
+  EXPECT_EQ(outcome(row(14, 0, {})), "");
 }
 
 TEST(BenchRows, WhatIsNoNumberIsNoResult) {
-  EXPECT_EQ(outcome(row(std::nan(""), 0, at_most(13))), Outcome::no_result);
-  EXPECT_EQ(outcome(row(0, 10, at_least(5))), Outcome::no_result);
+  EXPECT_EQ(outcome(row(std::nan(""), 0, at_most(13))), "no result");
+  EXPECT_EQ(outcome(row(0, 10, at_least(5))), "no result");
   EXPECT_FALSE(complete({{row(1, 0, {}), row(std::nan(""), 0, {})}, {}}));
 }
 

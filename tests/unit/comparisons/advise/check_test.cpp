@@ -12,7 +12,7 @@ namespace springproof::check_test {
 namespace {
 
 const std::vector<Measurement>& held_out() {
-  static const std::vector<Measurement> rows = read_measurements(advise_folder() / "held_out.csv").rows;
+  static const std::vector<Measurement> rows = read_measurements(advise_folder() / "held_out.csv");
   return rows;
 }
 

@@ -1,5 +1,5 @@
 // The kind of load that a displacement field is.
-#include "comparisons/advise/load_shares.h"
+#include "comparisons/advise/pilot.h"
 
 #include <gtest/gtest.h>
 

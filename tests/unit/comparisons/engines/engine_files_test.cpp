@@ -66,7 +66,7 @@ TEST(FiveTetrahedra, PreferNoDirection) {
 
 TEST(EngineFiles, JoltGetsTheSpringsAsCompliances) {
   const SpringsFile springs = springs_of_block("msm_18", 0.25);
-  const nlohmann::json file = nlohmann::json::parse(jolt_json({springs, {"x_min"}}));
+  const nlohmann::json file = nlohmann::json::parse(jolt_json(springs, {"x_min"}));
   EXPECT_EQ(file["format"], "springproof jolt");
   EXPECT_EQ(file["version"], 1);
   EXPECT_EQ(file["poisson_ratio_of_model"], 0.25);
@@ -93,7 +93,7 @@ TEST(EngineFiles, JoltGetsTheSpringsAsCompliances) {
 
 TEST(EngineFiles, SurfacePointsOutwards) {
   const SpringsFile springs = springs_of_block("msm_18", 0.25);
-  const nlohmann::json file = nlohmann::json::parse(bullet_json({springs, {}}));
+  const nlohmann::json file = nlohmann::json::parse(bullet_json(springs, {}));
   const NodalVectors& X = springs.model.network.X;
   double six_volumes = 0;
   for (const auto& f : file["surface"]["facets"]) {
@@ -106,7 +106,7 @@ TEST(EngineFiles, SurfacePointsOutwards) {
 
 TEST(EngineFiles, BulletGetsTetrahedraAndConvertedConstants) {
   const SpringsFile springs = springs_of_block("msm_18", 0.45);
-  const nlohmann::json file = nlohmann::json::parse(bullet_json({springs, {"x_min", "x_max"}}));
+  const nlohmann::json file = nlohmann::json::parse(bullet_json(springs, {"x_min", "x_max"}));
   EXPECT_EQ(file["format"], "springproof bullet");
   EXPECT_EQ(file["poisson_ratio_of_model"], 0.45);
   EXPECT_EQ(file["tetrahedra"]["nodes"].size(), 5u * 24);
@@ -119,7 +119,7 @@ TEST(EngineFiles, BulletGetsTetrahedraAndConvertedConstants) {
 
 TEST(EngineFiles, MujocoGetsAFlexWithTheMassOfEachNode) {
   const SpringsFile springs = springs_of_block("msm_18", 0.3);
-  const std::string text = mujoco_mjcf({springs, {"x_min"}});
+  const std::string text = mujoco_mjcf(springs, {"x_min"});
   double mass = 0;
   int free = 0;
   const std::regex inertial("<inertial pos=\"0 0 0\" mass=\"([^\"]*)\"");
@@ -138,7 +138,7 @@ TEST(EngineFiles, MujocoGetsAFlexWithTheMassOfEachNode) {
 template <class Write>
 std::string refusal(const Write& write, const SpringsFile& springs) {
   try {
-    write({springs, {}});
+    write(springs, {});
   } catch (const InputError& error) {
     return error.what();
   }

@@ -1,4 +1,4 @@
-#include "comparisons/judge/wrinkles.h"
+#include "comparisons/judge/deformation.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "comparisons/report/gltf.h"
+#include "comparisons/report/report.h"
 
 #include <gtest/gtest.h>
 #include <tiny_gltf.h>

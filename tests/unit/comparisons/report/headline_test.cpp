@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "comparisons/report/stability_words.h"
+#include "comparisons/report/headline_cases.h"
 #include "unit/comparisons/report/headline_cases.h"
 
 namespace springproof::headline_test {
@@ -31,16 +31,10 @@ TEST(Headline, NamesTheModelsClosestInTime) {
   for (const auto& [model, error] : {std::pair("hybmss", 0.2), {"hybmss_avg", 0.06}, {"emsm", 0.08}}) {
     const std::string label = std::string(model) + " in motion";
     c.experiment.models.push_back({model, {}, label, {}, {}, true});
-    for (const double nu : {0.0, 0.3})
-      c.rows.push_back({{label, nu, {4, 4, 4}},
-                        "bar",
-                        "finite",
-                        "motion_error",
-                        nu > 0 ? error : error / 2,
-                        "1",
-                        0,
-                        0.03,
-                        nu > 0 ? error : error / 2});
+    for (const double nu : {0.0, 0.3}) {
+      const double there = nu > 0 ? error : error / 2;
+      c.rows.push_back({{label, nu, {4, 4, 4}}, "bar", "finite", "motion_error", there, "1", 0, 0.03, there});
+    }
   }
   const std::string found =
       "In time hybmss_avg (6 %) and emsm (8 %) come closest to finite elements and cannot be told apart, by the "
@@ -102,19 +96,8 @@ TEST(Headline, TetrahedraAndLongPoissonsRatiosAreReadable) {
 TEST(Headline, ACaseWithoutModelsIsJudgedByItsExpectationsAlone) {
   CaseResult c = with_errors("plate", "fem_p1", {{0, 10, 0.5}});
   c.experiment.models.clear();
-  c.checks.push_back({"fem_p1",
-                      0,
-                      {10, 10, 10},
-                      "displacement_error_order",
-                      "1",
-                      "analytic",
-                      1.9,
-                      1.2,
-                      0,
-                      0.0,
-                      Verdict::fail,
-                      "",
-                      true});
+  const RunKey at{"fem_p1", 0, {10, 10, 10}};
+  c.checks.push_back({at, "displacement_error_order", "1", "analytic", 1.9, 1.2, 0, 0.0, Verdict::fail, "", true});
   const Headline h = headline({c});
   EXPECT_TRUE(h.models.empty());
   ASSERT_EQ(h.failed_checks.size(), 1u);
@@ -239,19 +222,9 @@ TEST(Headline, VerificationShowsValueTargetAndError) {
   c.experiment.reference.elements = {"q2"};
   c.experiment.materials = {{1e4, 0.3, 1000}};
   c.references.push_back({0.3, "displacement.C.y", "m", {}, {}, 1.5, 16.455, 0.018, "", "q2"});
-  c.checks.push_back({"fem",
-                      0.3,
-                      {10, 10, 10},
-                      "displacement.C.y",
-                      "m",
-                      "published",
-                      16.433,
-                      16.455,
-                      0.05,
-                      0.018,
-                      Verdict::pass,
-                      "Table 1",
-                      false});
+  const RunKey at{"fem", 0.3, {10, 10, 10}};
+  c.checks.push_back(
+      {at, "displacement.C.y", "m", "published", 16.433, 16.455, 0.05, 0.018, Verdict::pass, "Table 1", false});
   const Headline h = headline({c});
   ASSERT_EQ(h.verification.size(), 1u);
   for (const char* part :
@@ -310,13 +283,16 @@ TEST(Headline, ModelsThatFollowAnotherLawThanTheReferenceAreNamed) {
   EXPECT_TRUE(to_json(c)["experiment"]["models"][0]["law"].is_null());
 }
 
+Run lattice_run(const std::string& model, double nu, const char* kinematics, const Stability& state) {
+  const RunKey key{model, nu, {6, 6, 6}};
+  return {key, "msm", kinematics, state.lost.empty(), "", "", 1, 0, 0, 0, 0, 0, state};
+}
+
 TEST(Headline, ALostEquilibriumIsToldWithWhatHappenedAndWhatHolds) {
   CaseResult c = with_errors("press", "hybmss_fd", {});
   c.experiment.kinematics = "hencky";
-  const Cells cells = {6, 6, 6};
-  const auto run = [&](const std::string& model, double nu, Stability stability) {
-    c.runs.push_back(
-        {{model, nu, cells}, "msm", "finite", stability.lost.empty(), "", "", 1, 0, 0, 0, 0, 0, stability});
+  const auto run = [&](const std::string& model, double nu, const Stability& state) {
+    c.runs.push_back(lattice_run(model, nu, "finite", state));
   };
   run("hybmss_fd", 0.25, {0.1, "unstable", 0.02, 0.01, {1.5, 1.4, 0.2}, 0.05});
   run("hybmss_fd", 0.4, {0.2, "unstable", 0.04, 0.01, {1.5, 1.4, 0.2}, 0.05});
@@ -341,19 +317,7 @@ TEST(Headline, ALostEquilibriumIsToldWithWhatHappenedAndWhatHolds) {
 
 TEST(Headline, AStateWithWrinklesIsNoStateOfTheMaterial) {
   CaseResult c = with_errors("press", "hybmss_fd", {});
-  c.runs.push_back({{"hybmss_fd", 0.25, {6, 6, 6}},
-                    "msm",
-                    "linear",
-                    true,
-                    "",
-                    "",
-                    1,
-                    0,
-                    0,
-                    0,
-                    0,
-                    0,
-                    Stability{1, "", 0.02, {}, {}, 0.4}});
+  c.runs.push_back(lattice_run("hybmss_fd", 0.25, "linear", {1, "", 0.02, {}, {}, 0.4}));
   const Headline h = headline({c});
   ASSERT_EQ(h.warnings.size(), 1u);
   EXPECT_EQ(h.warnings[0].brief,

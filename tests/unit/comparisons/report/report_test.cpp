@@ -132,40 +132,14 @@ CaseResult timed_case() {
   c.experiment.cost = true;
   for (int n : {1, 2}) {
     const double tenfold = n == 1 ? 1 : 10;
-    c.runs.push_back({{"hybmss", 0.25, {n, n, n}},
-                      "msm",
-                      "linear",
-                      true,
-                      "",
-                      "CG",
-                      9,
-                      1e-9,
-                      0.0008 * tenfold,
-                      long(100 * tenfold),
-                      1,
-                      0.0002 * tenfold});
-    c.runs.push_back({{"fem_q2", 0.25, {n, n, n}},
-                      "fem",
-                      "linear",
-                      true,
-                      "",
-                      "CG",
-                      9,
-                      1e-9,
-                      0.008 * tenfold,
-                      long(1000 * tenfold),
-                      1,
-                      0.002 * tenfold});
-    for (const auto& [model, error] : {std::pair("hybmss", 0.2), std::pair("fem_q2", 0.05)})
-      c.rows.push_back({{model, 0.25, {n, n, n}},
-                        "compress",
-                        "linear",
-                        "displacement_error",
-                        error / tenfold,
-                        "1",
-                        {},
-                        0.001,
-                        error / tenfold});
+    const auto add = [&](const char* model, const char* kind, double cost, double error) {
+      const RunKey key{model, 0.25, {n, n, n}};
+      const long unknowns = std::lround(1e5 * cost);
+      c.runs.push_back({key, kind, "linear", true, "", "CG", 9, 1e-9, 0.8 * cost, unknowns, 1, 0.2 * cost});
+      c.rows.push_back({key, "compress", "linear", "displacement_error", error, "1", {}, 0.001, error});
+    };
+    add("hybmss", "msm", 0.001 * tenfold, 0.2 / tenfold);
+    add("fem_q2", "fem", 0.01 * tenfold, 0.05 / tenfold);
   }
   return c;
 }
@@ -173,8 +147,7 @@ CaseResult timed_case() {
 TEST_F(ReportInBrowser, SetsErrorsAgainstCost) {
   const std::string dom = open({timed_case()});
   expect_no_complaint(dom);
-  const std::string part = dom.substr(dom.find("<section id=\"cost\">"),
-                                      dom.find("<section id=\"splits\"") - dom.find("<section id=\"cost\">"));
+  const std::string part = between(dom, "<section id=\"cost\"", "<section id=\"splits\"");
   EXPECT_EQ(count(part, "<canvas"), 2u) << "against time, against unknowns";
   // On straight lines in logarithms: 1 ms * 20/3 at 100 * 20/3 unknowns, and 10 ms * 5/3.
   EXPECT_NE(part.find("hybmss</span><small>6.7 ms, 670 unknowns</small>"), std::string::npos) << "3 %";
@@ -193,13 +166,11 @@ TEST_F(ReportInBrowser, SetsReactionsBesideDisplacementsWhereASupportMoves) {
           {{model, 0.25, {n, n, n}}, "compress", "linear", "reaction_error", error / n, "1", 0.0, 0.001, error / n});
   const std::string dom = open({c});
   expect_no_complaint(dom);
-  const std::string part = dom.substr(dom.find("<section id=\"cost\">"),
-                                      dom.find("<section id=\"splits\"") - dom.find("<section id=\"cost\">"));
+  const std::string part = between(dom, "<section id=\"cost\"", "<section id=\"splits\"");
   EXPECT_NE(part.find("<small>displacement</small>"), std::string::npos);
   EXPECT_NE(part.find("<small>reactions</small></td><td>0.25</td><td>–</td>"), std::string::npos)
       << "20 % and 40 %: none to 10 %";
-  const std::string table = dom.substr(dom.find("<section id=\"cases\">"),
-                                       dom.find("<section id=\"shapes\"") - dom.find("<section id=\"cases\">"));
+  const std::string table = between(dom, "<section id=\"cases\"", "<section id=\"shapes\"");
   EXPECT_NE(table.find("<small>reactions 40 %</small>"), std::string::npos);
   EXPECT_NE(table.find("number tint4\">"), std::string::npos) << "by the worse of both: " << table;
 }
@@ -209,8 +180,7 @@ TEST_F(ReportInBrowser, NamesNoModelOffItsOwnPoissonsRatioAsCheapest) {
   c.own_poisson_ratios["hybmss"] = 0.3;
   const std::string dom = open({c});
   expect_no_complaint(dom);
-  const std::string part = dom.substr(dom.find("<section id=\"cost\">"),
-                                      dom.find("<section id=\"splits\"") - dom.find("<section id=\"cost\">"));
+  const std::string part = between(dom, "<section id=\"cost\"", "<section id=\"splits\"");
   EXPECT_EQ(part.find("hybmss</span><small>6.7 ms"), std::string::npos);
   EXPECT_NE(part.find("fem_q2</span><small>17 ms, 1700 unknowns</small><small>no springs do</small>"),
             std::string::npos);
@@ -265,31 +235,14 @@ CaseResult verification_case() {
         {0.25, "stress.D.yy", "Pa", grids, {-5e6, -5.3e6, -5.37e6}, 2.1, -5.39e6, 1e4, "Richardson", element});
     c.references.push_back(
         {0.25, "displacement_error", "1", grids, {0.08, 0.01, 0.00125}, 3.0, 0.00125, 0, "", element});
-    c.rows.push_back({{std::string("fem_") + element, 0.25, grids[2]},
-                      "plate",
-                      "linear",
-                      "stress.D.yy",
-                      -5.37e6,
-                      "Pa",
-                      -5.38e6,
-                      {},
-                      1e4});
+    const RunKey key{std::string("fem_") + element, 0.25, grids[2]};
+    c.rows.push_back({key, "plate", "linear", "stress.D.yy", -5.37e6, "Pa", -5.38e6, {}, 1e4});
   }
   c.checks.push_back(
       {"fem", 0.25, {1, 1, 1}, "stress.D.yy", "Pa", "published", -5.38e6, -5.39e6, 5.38e4, 1e4, Verdict::pass, "LE10"});
-  c.checks.push_back({"fem_q2",
-                      0.25,
-                      {1, 1, 1},
-                      "displacement_error_order",
-                      "1",
-                      "analytic",
-                      2.9,
-                      3.0,
-                      0,
-                      0.0,
-                      Verdict::pass,
-                      "theory",
-                      true});
+  const RunKey order{"fem_q2", 0.25, {1, 1, 1}};
+  c.checks.push_back(
+      {order, "displacement_error_order", "1", "analytic", 2.9, 3.0, 0, 0.0, Verdict::pass, "theory", true});
   c.pictures.push_back(sample_picture("fem", 0.25));
   return c;
 }
@@ -307,8 +260,7 @@ TEST_F(ReportInBrowser, ShowsTheVerificationOfTheReference) {
   EXPECT_NE(section.find("<b>3.00</b>"), std::string::npos);
   const std::string page = dom.substr(end);
   EXPECT_NE(page.find("≥ 2.9"), std::string::npos);
-  const std::string cases = dom.substr(dom.find("<section id=\"cases\">"),
-                                       dom.find("<section id=\"shapes\"") - dom.find("<section id=\"cases\">"));
+  const std::string cases = between(dom, "<section id=\"cases\"", "<section id=\"shapes\"");
   EXPECT_EQ(cases.find("case-verification-plate"), std::string::npos)
       << "a case without models is no row of the models' table";
 }

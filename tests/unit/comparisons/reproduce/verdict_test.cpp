@@ -1,4 +1,3 @@
-#include "comparisons/reproduce/verdict.h"
 
 #include <gtest/gtest.h>
 
@@ -45,7 +44,7 @@ class ReproducedResults : public testing::Test {
   ClaimVerdict judged(Claim claim) const {
     claim.case_name = "golec_2019/compress";
     claim.measure = "x";
-    PaperFigure figure{"golec_2019", "3", "", {claim.case_name}, "because", {claim}};
+    PaperFigure figure{"3", "", {claim.case_name}, "because", {claim}};
     return judge_figure(read(), figure).claims.at(0);
   }
 
@@ -89,9 +88,11 @@ TEST_F(ReproducedResults, OneMeasureMayBeBoundedByTheSpanOfAnother) {
 }
 
 TEST_F(ReproducedResults, WithoutANumberOfThePaperNothingIsJudged) {
-  const PaperFigure figure{"golec_2019", "3",
-                           "",           {"golec_2019/compress"},
-                           "",           {{"shown", "golec_2019/compress", "x", {"a"}, Claim::number, 0, -1, false}}};
+  const PaperFigure figure{"3",
+                           "",
+                           {"golec_2019/compress"},
+                           "",
+                           {{"shown", "golec_2019/compress", "x", {"a"}, Claim::number, 0, -1, false}}};
   EXPECT_EQ(judge_figure(read(), figure).word, "drawn");
   EXPECT_EQ(judge_figure(read(), figure).sentence, "shown: at most 1.2 (not judged)");
 }
@@ -114,7 +115,7 @@ TEST_F(ReproducedResults, TheScatterBetweenRunsIsNoDistance) {
 }
 
 TEST_F(ReproducedResults, WhatIsNotJudgedIsStillSaid) {
-  PaperFigure figure{"golec_2019", "3", "", {"golec_2019/compress"}, ""};
+  PaperFigure figure{"3", "", {"golec_2019/compress"}, ""};
   const auto off_one = [](double within) {
     return Claim{"near one", "golec_2019/compress", "x", {"a"}, Claim::number, 1, within};
   };
@@ -128,7 +129,7 @@ TEST_F(ReproducedResults, WhatIsNotJudgedIsStillSaid) {
 TEST_F(ReproducedResults, NoReasonWhyAPrintedValueDiffersStandsBesideOneThatAgrees) {
   result.published.push_back({{"a", 0.25, {1, 1, 1}}, "x", "N", 1.0, 1.001, "Table 2, a", "depends on the steps"});
   result.published.push_back({{"a", 0.4, {1, 1, 1}}, "x", "N", 1.1, 1.2, "Table 2, a", "depends on the steps"});
-  PaperFigure figure{"golec_2019", "table2", "", {"golec_2019/compress"}, ""};
+  PaperFigure figure{"table2", "", {"golec_2019/compress"}, ""};
   figure.last_digit = 0.01;
   const FigureVerdict verdict = judge_figure(read(), figure);
   ASSERT_EQ(verdict.values.size(), 2u);
@@ -142,7 +143,7 @@ TEST_F(ReproducedResults, PrintedValuesAgreeWithinTwoPerCentOrTheirLastDigit) {
   result.published.push_back({{"a", 0.4, {1, 1, 1}}, "x", "N", 1.2, 1.2, "Table 21", "of another table"});
   result.checks.push_back(
       {{"b", 0.25, {1, 1, 1}}, "x", "N", "published", 2.91, 3.0, 0.5, {}, Verdict::pass, "Table 2, b"});
-  PaperFigure figure{"golec_2019", "table2", "", {"golec_2019/compress"}, ""};
+  PaperFigure figure{"table2", "", {"golec_2019/compress"}, ""};
   figure.last_digit = 0.01;
   const FigureVerdict strict = judge_figure(read(), figure);
   ASSERT_EQ(strict.values.size(), 3u);
@@ -152,7 +153,7 @@ TEST_F(ReproducedResults, PrintedValuesAgreeWithinTwoPerCentOrTheirLastDigit) {
 }
 
 TEST_F(ReproducedResults, FiguresOfCasesThatWereNotRunSaySo) {
-  PaperFigure figure{"golec_2019", "3", "", {"golec_2019/compress", "golec_2019/lost"}, ""};
+  PaperFigure figure{"3", "", {"golec_2019/compress", "golec_2019/lost"}, ""};
   EXPECT_EQ(judge_figure(read(), figure).word, "not run");
   figure.cases.clear();
   EXPECT_EQ(judge_figure(read(), figure).word, "not redone");
@@ -196,8 +197,7 @@ TEST_F(ReproducedResults, ADamagedReportIsAnInputError) {
 }
 
 TEST_F(ReproducedResults, ThePageAndTheFilesAreWritten) {
-  PaperFigure figure{"golec_2019",
-                     "3",
+  PaperFigure figure{"3",
                      "a < b",
                      {"golec_2019/compress"},
                      "because of <this>",
