@@ -111,10 +111,10 @@ class FiniteOperator {
     for (int f = 0; f < pressure_.functions; ++f) r[f] += pressure_.basis[f][q] * excess * u.JxW(q);
   }
 
-  static Matrix3 lane_of(const Tensor& F, std::size_t lane) {
-    Matrix3 f;
+  static Eigen::Matrix3d lane_of(const Tensor& F, std::size_t lane) {
+    Eigen::Matrix3d f;
     for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) f[i][j] = F[i][j][lane];
+      for (int j = 0; j < 3; ++j) f(i, j) = F[i][j][lane];
     return f;
   }
 
@@ -125,8 +125,8 @@ class FiniteOperator {
       F[q] = u.get_gradient(q);
       for (int i = 0; i < 3; ++i) F[q][i][i] += 1.;
       for (std::size_t lane = 0; lane < Lane::size(); ++lane) {
-        const Matrix3 f = lane_of(F[q], lane);
-        smallest = std::min(smallest, determinant(f));
+        const Eigen::Matrix3d f = lane_of(F[q], lane);
+        smallest = std::min(smallest, f.determinant());
         if (smallest > 0) g[q][lane] = dilatation(law_, f);
       }
     }
@@ -166,7 +166,7 @@ class FiniteOperator {
     for (const double s : response.S) put(s);
     for (const double s : response.Q) put(s);
     for (const double s : response.G) put(s);
-    for (const Voigt& row : response.D)
+    for (const auto& row : response.D.rowwise())
       for (const double d : row) put(d);
     put(slope);
   }

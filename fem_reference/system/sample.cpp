@@ -50,19 +50,14 @@ Eigen::Matrix3d linear_stress(const dealii::Tensor<2, 3>& h, double mu, double p
 }
 
 // F S F^T / det F
-Eigen::Matrix3d cauchy_stress(Law law, const Matrix3& F, double mu, double p) {
-  Eigen::Matrix3d second, deformation;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) deformation(i, j) = F[i][j];
-  const Voigt S = stress(law, mu, p, deformation.transpose() * deformation);
-  second << S[0], S[3], S[5], S[3], S[1], S[4], S[5], S[4], S[2];
-  return deformation * second * deformation.transpose() / determinant(F);
+Eigen::Matrix3d cauchy_stress(Law law, const Eigen::Matrix3d& F, double mu, double p) {
+  return F * tensor(stress(law, mu, p, F.transpose() * F)) * F.transpose() / F.determinant();
 }
 
-Matrix3 deformation_gradient(const dealii::Tensor<2, 3>& h) {
-  Matrix3 F;
+Eigen::Matrix3d deformation_gradient(const dealii::Tensor<2, 3>& h) {
+  Eigen::Matrix3d F;
   for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) F[i][j] = h[i][j] + (i == j);
+    for (int j = 0; j < 3; ++j) F(i, j) = h[i][j] + (i == j);
   return F;
 }
 
@@ -104,7 +99,7 @@ class CellStress {
     for (std::size_t k = 0; k < points_.size(); ++k) {
       const Location here{cell, points_[k]};
       if (law_) {
-        const Matrix3 F = deformation_gradient(gradients_[k]);
+        const Eigen::Matrix3d F = deformation_gradient(gradients_[k]);
         const double p = pressure_at(law, answer_.pressure, here, dilatation(*law_, F));
         stresses_[k] = cauchy_stress(*law_, F, law.mu, p);
       } else {
@@ -255,7 +250,7 @@ PointState state_at(const CellLaw& law, const dealii::Tensor<2, 3>& h, double p,
       for (int j = 0; j < 3; ++j) work += stress(i, j) * h[i][j];
     return {stress, work / 2};
   }
-  const Matrix3 F = deformation_gradient(h);
+  const Eigen::Matrix3d F = deformation_gradient(h);
   double energy = shear_energy(*law.law, law.mu, F);
   if (law.form != Form::mixed) {
     energy += dilatation_energy(*law.law, law.lambda, g);
