@@ -149,39 +149,27 @@ Pencil assemble_pencil(const GridProblem& problem, const Body3& body, const deal
 /// Number of eigenvalues below sigma: that of negative pivots of K - sigma M (Sylvester), less one for each pressure,
 /// whose own block is negative.
 PetscInt eigenvalues_below(double sigma, const Pencil& pencil) {
-  Mat shifted = nullptr;
+  OwnedMat shifted;
   succeed(MatDuplicate(pencil.K->petsc(), MAT_COPY_VALUES, &shifted));
   succeed(MatAXPY(shifted, -sigma, pencil.M->petsc(), SAME_NONZERO_PATTERN));
-  const PetscInt negative = SymmetricFactors(shifted).negative_pivots();
-  succeed(MatDestroy(&shifted));
-  return negative - pencil.pressures;
+  return SymmetricFactors(shifted).negative_pivots() - pencil.pressures;
 }
 
-/// An eigenvalue solver and its vectors; destroyed on every way out.
-struct Eigensolver {
-  EPS eps = nullptr;
-  Vec vector = nullptr;
-  Eigensolver() = default;
-  Eigensolver(const Eigensolver&) = delete;
-  Eigensolver& operator=(const Eigensolver&) = delete;
-  ~Eigensolver() {
-    VecDestroy(&vector);
-    EPSDestroy(&eps);
-  }
-};
+using Eigensolver = Owned<EPS, EPSDestroy>;
 
-void set_up(const Pencil& pencil, double target, Eigensolver& solver) {
+Eigensolver eigensolver(const Pencil& pencil, double target) {
+  Eigensolver eps;
   ST transformation = nullptr;
   KSP ksp = nullptr;
   PC factors = nullptr;
-  succeed(EPSCreate(PETSC_COMM_SELF, &solver.eps));
-  succeed(EPSSetOperators(solver.eps, pencil.K->petsc(), pencil.M->petsc()));
-  succeed(EPSSetProblemType(solver.eps, EPS_GHEP));
-  succeed(EPSSetType(solver.eps, EPSKRYLOVSCHUR));
-  succeed(EPSSetTolerances(solver.eps, eigen_tolerance, 500));
-  succeed(EPSSetTarget(solver.eps, target));
-  succeed(EPSSetWhichEigenpairs(solver.eps, EPS_TARGET_MAGNITUDE));
-  succeed(EPSGetST(solver.eps, &transformation));
+  succeed(EPSCreate(PETSC_COMM_SELF, &eps));
+  succeed(EPSSetOperators(eps, pencil.K->petsc(), pencil.M->petsc()));
+  succeed(EPSSetProblemType(eps, EPS_GHEP));
+  succeed(EPSSetType(eps, EPSKRYLOVSCHUR));
+  succeed(EPSSetTolerances(eps, eigen_tolerance, 500));
+  succeed(EPSSetTarget(eps, target));
+  succeed(EPSSetWhichEigenpairs(eps, EPS_TARGET_MAGNITUDE));
+  succeed(EPSGetST(eps, &transformation));
   succeed(STSetType(transformation, STSINVERT));
   succeed(STSetMatStructure(transformation, SAME_NONZERO_PATTERN));
   succeed(STGetKSP(transformation, &ksp));
@@ -189,14 +177,15 @@ void set_up(const Pencil& pencil, double target, Eigensolver& solver) {
   succeed(KSPGetPC(ksp, &factors));
   succeed(PCSetType(factors, PCCHOLESKY));
   succeed(PCFactorSetMatSolverType(factors, MATSOLVERMUMPS));
+  return eps;
 }
 
 /// Computes `count` modes; the matrix is factorised once.  Iterations.
-int solve(const Pencil& pencil, int count, Eigensolver& solver) {
+int solve(const Pencil& pencil, int count, EPS eps) {
   PetscInt iterations = 0;
-  succeed(EPSSetDimensions(solver.eps, count, std::min<PetscInt>(pencil.displacements, 3 * count), PETSC_DEFAULT));
-  succeed(EPSSolve(solver.eps));
-  succeed(EPSGetIterationNumber(solver.eps, &iterations));
+  succeed(EPSSetDimensions(eps, count, std::min<PetscInt>(pencil.displacements, 3 * count), PETSC_DEFAULT));
+  succeed(EPSSolve(eps));
+  succeed(EPSGetIterationNumber(eps, &iterations));
   return int(iterations);
 }
 
@@ -253,15 +242,14 @@ void solve_modes(const GridProblem& problem, const Body3& body, const dealii::Do
   double slowest = shear_modulus(problem.material) / problem.material.density / low.distance_square(high);
   for (const IsotropicMaterial& m : problem.regions)
     slowest = std::min(slowest, shear_modulus(m) / m.density / low.distance_square(high));
-  Eigensolver solver;
-  set_up(pencil, -0.01 * slowest, solver);
+  const Eigensolver eps = eigensolver(pencil, -0.01 * slowest);
   solution.form = fmt::format("{}, consistent mass, Krylov-Schur", describe(element, form_of(laws)));
   solution.unknowns = pencil.unknowns();
   Spectrum spectrum;
   for (int beyond = modes_beyond; beyond <= most_beyond; beyond *= 2) {
     const int count = int(std::min<PetscInt>(problem.modes + 6 + beyond, pencil.displacements));
-    solution.iterations += solve(pencil, count, solver);
-    spectrum = spectrum_of(solver.eps, problem.modes);
+    solution.iterations += solve(pencil, count, eps);
+    spectrum = spectrum_of(eps, problem.modes);
     if (int(spectrum.found.size()) < count) {
       solution.message = fmt::format("{} of {} natural modes converged", spectrum.found.size(), count);
       return;
@@ -272,18 +260,19 @@ void solve_modes(const GridProblem& problem, const Body3& body, const dealii::Do
   if (!solution.message.empty()) return;
   const auto& [found, rigid, last, gap] = spectrum;
   const std::vector<Location> places = locate(body, problem.points);
-  succeed(MatCreateVecs(pencil.K->petsc(), &solver.vector, nullptr));
+  OwnedVec vector;
+  succeed(MatCreateVecs(pencil.K->petsc(), &vector, nullptr));
   for (std::size_t i = rigid; i < last; ++i) {
     PetscReal error = 0;
-    succeed(EPSComputeError(solver.eps, found[i].second, EPS_ERROR_RELATIVE, &error));
+    succeed(EPSComputeError(eps, found[i].second, EPS_ERROR_RELATIVE, &error));
     solution.residual = std::max(solution.residual, double(error));
-    succeed(EPSGetEigenvector(solver.eps, found[i].second, solver.vector, nullptr));
+    succeed(EPSGetEigenvector(eps, found[i].second, vector, nullptr));
     const PetscScalar* entries = nullptr;
-    succeed(VecGetArrayRead(solver.vector, &entries));
+    succeed(VecGetArrayRead(vector, &entries));
     DofVector u = zero_vector(dof_handler);
     for (std::size_t dof = 0; dof < pencil.number.size(); ++dof)
       if (pencil.number[dof] >= 0) u[dof] = entries[pencil.number[dof]];
-    succeed(VecRestoreArrayRead(solver.vector, &entries));
+    succeed(VecRestoreArrayRead(vector, &entries));
     u.update_ghost_values();
     solution.frequencies.push_back(std::sqrt(found[i].first) / (2 * std::numbers::pi));
     solution.shapes.push_back(displacement_at(places, dof_handler, u));

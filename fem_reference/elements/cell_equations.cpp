@@ -12,8 +12,8 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 struct PointResponse {
   Matrix3d F;  // identity at small strain
   Voigt S, Q;
-  Voigt G;       // dg / dE, for strains with engineering shears
-  Matrix6 D;     // dS / dE at fixed p
+  Voigt G;    // dg / dE, for strains with engineering shears
+  Matrix6 D;  // dS / dE at fixed p
 };
 
 double dilatation_at(const CellLaw& law, const Matrix3d& h) {
@@ -244,9 +244,8 @@ CellVector step_residual(const CellLaw& law, const CellShape& shape, const CellV
              shape.pressures.row(q).transpose();
     }
     const Matrix3d F0 = Matrix3d::Identity() + first.h[q], F1 = Matrix3d::Identity() + last.h[q];
-    const Voigt S = mean_over(Matrix3d(F0.transpose() * F0), Matrix3d(F1.transpose() * F1), [&](const Matrix3d& C) {
-      return springproof::fem::stress(*law.law, law.mu, p, C);
-    });
+    const Voigt S = mean_over(Matrix3d(F0.transpose() * F0), Matrix3d(F1.transpose() * F1),
+                              [&](const Matrix3d& C) { return springproof::fem::stress(*law.law, law.mu, p, C); });
     stress.middleRows<3>(3 * q) = w / 2 * tensor(S) * (F0 + F1).transpose();
   }
   add_forces(shape, stress, r.u);

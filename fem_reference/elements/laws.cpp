@@ -167,8 +167,7 @@ LawResponse respond(Law law, double mu, double p, const Eigen::Matrix3d& F) {
     pairs.col(a) = symmetric_product(N.col(a), N.col(b));
     of_pairs[a] = 2 * divided_difference(r, c, std::min(a, b), std::max(a, b));
   }
-  return {M * r.s, M * r.q, M * r.g,
-          M * r.d * M.transpose() + pairs * of_pairs.asDiagonal() * pairs.transpose()};
+  return {M * r.s, M * r.q, M * r.g, M * r.d * M.transpose() + pairs * of_pairs.asDiagonal() * pairs.transpose()};
 }
 
 Voigt stress(Law law, double mu, double p, const Eigen::Matrix3d& C) {

@@ -35,15 +35,14 @@ void AssembledOperator::assemble_stiffness(const DofVector* deformed_by) {
   spaces_->assemble_stiffness(deformed_by, *smoothed_);
   const dealii::Mapping<3>& mapping = *system_.body.mapping;
   if (!coarse_) {
-    multigrid_ = std::make_unique<Multigrid>(*smoothed_, mapping, spaces_->u, most_factored_);
+    multigrid_ = std::make_unique<Multigrid>(*smoothed_, nullptr, mapping, spaces_->u, most_factored_);
     return;
   }
   DofVector at_corners;
   if (deformed_by) at_corners = coarse_->restricted(*spaces_, *deformed_by);
   coarse_->spaces.assemble_stiffness(deformed_by ? &at_corners : nullptr, *coarse_->matrix);
-  multigrid_ = std::make_unique<Multigrid>(
-      *smoothed_, mapping, LinearLevel{*coarse_->matrix, *coarse_->interpolation, *coarse_->dof_handler},
-      most_factored_);
+  const LinearLevel linear{*coarse_->matrix, *coarse_->interpolation};
+  multigrid_ = std::make_unique<Multigrid>(*smoothed_, &linear, mapping, *coarse_->dof_handler, most_factored_);
 }
 
 namespace {

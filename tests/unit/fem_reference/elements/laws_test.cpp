@@ -66,8 +66,7 @@ TEST_P(FemLaw, TangentIsTheDerivativeOfTheStress) {
     const LawResponse r = fem::respond(law, mu, p, F);
     const Matrix plus = F + step * direction, minus = F - step * direction;
     const Matrix numeric =
-        (tensor(fem::respond(law, mu, p, plus).S) - tensor(fem::respond(law, mu, p, minus).S)) /
-        (2 * step);
+        (tensor(fem::respond(law, mu, p, plus).S) - tensor(fem::respond(law, mu, p, minus).S)) / (2 * step);
     const fem::Voigt dC = engineering(F.transpose() * direction + direction.transpose() * F);
     EXPECT_LE((tensor(r.D * dC) - numeric).norm(), test::finite_difference * mu);
     const double numeric_g = (fem::dilatation(law, plus) - fem::dilatation(law, minus)) / (2 * step);
