@@ -14,7 +14,6 @@
 #include "fem_reference/grid/processes.h"
 #include "fem_reference/grid/triangulate.h"
 #include "fem_reference/motion.h"
-#include "fem_reference/natural_modes.h"
 #include "fem_reference/solvers/coarsest_level.h"
 #include "fem_reference/system/boundary_conditions.h"
 #include "fem_reference/system/elastic_system.h"

@@ -36,7 +36,7 @@ struct GridProblem {
   double tolerance = 1e-9;                          ///< relative residual
   Method method = Method::automatic;
   bool wide_vectors = true;  ///< use wide SIMD vectors, where the processor has them
-  int modes = 0;             ///< natural modes to compute instead of a displacement (fem_reference/natural_modes.h)
+  int modes = 0;             ///< natural modes to compute instead of a displacement (fem_reference/motion.h)
   std::optional<MotionRequest>
       motion;  ///< integrated in `steps` steps instead of an equilibrium (fem_reference/motion.h)
   int steps = 0;

@@ -51,18 +51,6 @@ Location locate_near(const dealii::Triangulation<3>& triangulation, const dealii
   return best;
 }
 
-}  // namespace
-
-std::vector<dealii::types::global_dof_index> dofs_at(const Location& place, const dealii::DoFHandler<3>& dof_handler) {
-  const dealii::DoFHandler<3>::active_cell_iterator cell(&dof_handler.get_triangulation(), place.cell->level(),
-                                                         place.cell->index(), &dof_handler);
-  std::vector<dealii::types::global_dof_index> dofs(dof_handler.get_fe().n_dofs_per_cell());
-  cell->get_dof_indices(dofs);
-  return dofs;
-}
-
-namespace {
-
 constexpr double within = 1e-6;  // of a cell's size: a point this far outside counts as inside
 
 // The locally owned cells that contain the point, up to `within`.

@@ -191,10 +191,9 @@ CellPressures AssembledOperator::pressures(const MixedVector& x) const {
   const dealii::FiniteElement<3>& fe = spaces_->p.get_fe();
   const std::vector<dealii::Point<3>> corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   CellPressures all(system_.body.triangulation.n_active_cells());
-  std::vector<dealii::types::global_dof_index> dofs(fe.n_dofs_per_cell());
   for (const auto& cell : spaces_->p.active_cell_iterators()) {
     if (!cell->is_locally_owned()) continue;
-    cell->get_dof_indices(dofs);
+    const auto dofs = dofs_in(cell, spaces_->p);
     std::array<double, 4>& c = all[cell->active_cell_index()];
     for (int k = 0; k < 4; ++k) {
       for (unsigned int f = 0; f < dofs.size(); ++f) c[k] += from.p(dofs[f]) * fe.shape_value(f, corners[k]);

@@ -31,16 +31,11 @@ inline std::unique_ptr<SparseMatrix> empty_matrix(const dealii::DoFHandler<3>& r
                                                   const dealii::DoFHandler<3>& columns, MPI_Comm comm) {
   const DofSets row_dofs(rows), column_dofs(columns);
   dealii::DynamicSparsityPattern pattern(rows.n_dofs(), columns.n_dofs(), row_dofs.relevant);
-  std::vector<dealii::types::global_dof_index> r(rows.get_fe().n_dofs_per_cell()),
-      c(columns.get_fe().n_dofs_per_cell());
   for (const auto& cell : rows.active_cell_iterators()) {
     if (cell->is_artificial()) continue;
-    const dealii::DoFHandler<3>::active_cell_iterator other(&columns.get_triangulation(), cell->level(), cell->index(),
-                                                            &columns);
-    cell->get_dof_indices(r);
-    other->get_dof_indices(c);
+    auto c = dofs_in(cell, columns);
     std::sort(c.begin(), c.end());
-    for (const auto row : r)
+    for (const auto row : dofs_in(cell, rows))
       if (row_dofs.owned.is_element(row)) pattern.add_entries(row, c.begin(), c.end(), true);
   }
   return std::make_unique<SparseMatrix>(row_dofs.owned, column_dofs.owned, pattern, comm);
@@ -80,17 +75,11 @@ struct AssembledOperator::Spaces {
   // Calls visit() on every locally owned cell, with law, shape, u_indices and p_indices set.
   template <typename Visit>
   void for_each_cell(const Visit& visit) {
-    std::vector<dealii::types::global_dof_index> dofs(u_indices.size()), pressure_dofs(p_indices.size());
     for (const auto& cell : u.active_cell_iterators()) {
       if (!cell->is_locally_owned()) continue;
-      cell->get_dof_indices(dofs);
+      const auto dofs = dofs_in(cell, u);
       for (std::size_t i = 0; i < dofs.size(); ++i) u_indices[place[i]] = PetscInt(dofs[i]);
-      if (mixed()) {
-        const dealii::DoFHandler<3>::active_cell_iterator same(&p.get_triangulation(), cell->level(), cell->index(),
-                                                               &p);
-        same->get_dof_indices(pressure_dofs);
-        std::copy(pressure_dofs.begin(), pressure_dofs.end(), p_indices.begin());
-      }
+      if (mixed()) std::ranges::copy(dofs_in(cell, p), p_indices.begin());
       const dealii::Triangulation<3>::cell_iterator here = cell;
       law = system_.law_of(cell->material_id(), law.law);
       values.reinit(here);
@@ -201,16 +190,8 @@ struct AssembledOperator::CoarseSpaces {
   // Calls visit() on every locally owned cell, with the degrees of freedom of both elements.
   template <typename Visit>
   void for_each_pair(const Spaces& fine, const Visit& visit) const {
-    std::vector<dealii::types::global_dof_index> f(fine.u.get_fe().n_dofs_per_cell()),
-        c(dof_handler->get_fe().n_dofs_per_cell());
-    for (const auto& cell : fine.u.active_cell_iterators()) {
-      if (!cell->is_locally_owned()) continue;
-      const dealii::DoFHandler<3>::active_cell_iterator same(&dof_handler->get_triangulation(), cell->level(),
-                                                             cell->index(), dof_handler.get());
-      cell->get_dof_indices(f);
-      same->get_dof_indices(c);
-      visit(f, c);
-    }
+    for (const auto& cell : fine.u.active_cell_iterators())
+      if (cell->is_locally_owned()) visit(dofs_in(cell, fine.u), dofs_in(cell, *dof_handler));
   }
 
   // The vertex degrees of freedom of a cell come first in both elements.

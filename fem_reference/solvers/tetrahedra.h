@@ -34,19 +34,15 @@ class Tetrahedra {
   };
 
   Tetrahedra(const dealii::DoFHandler<3>& displacement, const dealii::DoFHandler<3>* pressure) {
-    std::vector<dealii::types::global_dof_index> u(30), p(4);
     std::size_t count = 0;
     for (const auto& cell : displacement.active_cell_iterators()) {
       const std::size_t lane = count++ % Lane::size();
       if (lane == 0) batches_.emplace_back();
       Batch& batch = batches_.back();
-      cell->get_dof_indices(u);
-      place_nodes(displacement.get_fe(), u, lane, batch);
+      place_nodes(displacement.get_fe(), dofs_in(cell, displacement), lane, batch);
       place_gradients(*cell, lane, batch);
       if (!pressure) continue;
-      const dealii::DoFHandler<3>::active_cell_iterator same(&pressure->get_triangulation(), cell->level(),
-                                                             cell->index(), pressure);
-      same->get_dof_indices(p);
+      const auto p = dofs_in(cell, *pressure);
       for (int i = 0; i < 4; ++i) batch.corner[i][lane] = p[i];
     }
   }

@@ -145,9 +145,8 @@ class TetrahedraOperator {
 
   CellPressures pressures(const MixedVector& x) const {
     CellPressures all;
-    std::vector<dealii::types::global_dof_index> p(4);
     for (const auto& cell : pressure_.active_cell_iterators()) {
-      cell->get_dof_indices(p);
+      const auto p = dofs_in(cell, pressure_);
       const double first = x.p(p[0]);
       all.push_back({first, x.p(p[1]) - first, x.p(p[2]) - first, x.p(p[3]) - first});
     }

@@ -20,7 +20,7 @@ NodalVectors displacement_at(const std::vector<Location>& places, const dealii::
   NodalVectors u = NodalVectors::Zero(places.size(), 3);
   for (std::size_t k = 0; k < places.size(); ++k) {
     if (!places[k].answers) continue;
-    const auto dofs = dofs_at(places[k], dof_handler);
+    const auto dofs = dofs_in(places[k].cell, dof_handler);
     for (unsigned int a = 0; a < scalar.n_dofs_per_cell(); ++a) {
       const double N = scalar.shape_value(a, places[k].unit);
       for (int c = 0; c < 3; ++c)
@@ -187,9 +187,8 @@ NodalSolution at_own_nodes(const ElasticSystem& system, std::optional<Law> law, 
   // Of a node, by its first degree of freedom and the material.
   std::map<std::pair<dealii::types::global_dof_index, dealii::types::material_id>, int> number;
   NodalSolution out;
-  std::vector<dealii::types::global_dof_index> dofs(fe.n_dofs_per_cell());
   for (const auto& cell : system.dof_handler.active_cell_iterators()) {
-    cell->get_dof_indices(dofs);
+    const auto dofs = dofs_in(cell, system.dof_handler);
     if (!system.laws.empty()) out.materials.push_back(cell->material_id());
     std::vector<int>& own = out.cells.emplace_back();
     for (unsigned int a = 0; a < units.size(); ++a)
@@ -204,7 +203,7 @@ NodalSolution at_own_nodes(const ElasticSystem& system, std::optional<Law> law, 
   out.stress = Stresses::Zero(nodes, 6);
   Eigen::VectorXd cells_at = Eigen::VectorXd::Zero(nodes);
   for (const auto& cell : system.dof_handler.active_cell_iterators()) {
-    cell->get_dof_indices(dofs);
+    const auto dofs = dofs_in(cell, system.dof_handler);
     const std::vector<Eigen::Matrix3d>& in_cell = stress.at_points(cell);
     for (unsigned int a = 0; a < units.size(); ++a) {
       const int n = out.cells[cell->active_cell_index()][a];
