@@ -9,7 +9,6 @@
 #include <limits>
 
 #include "fem_reference/grid/locate.h"
-#include "fem_reference/system/materials.h"
 #include "problem/system/input_error.h"
 
 namespace springproof::fem {

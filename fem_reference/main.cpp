@@ -11,7 +11,6 @@
 #include "fem_reference/elements/element.h"
 #include "fem_reference/exchange/case_request.h"
 #include "fem_reference/exchange/exchange.h"
-#include "fem_reference/exchange/grid_meshes.h"
 #include "fem_reference/exchange/plain_words.h"
 #include "fem_reference/grid/processes.h"
 #include "fem_reference/solve_grid.h"

@@ -12,7 +12,6 @@
 #include "fem_reference/grid/processes.h"
 #include "fem_reference/solvers/petsc.h"
 #include "fem_reference/system/boundary_conditions.h"
-#include "fem_reference/system/materials.h"
 #include "fem_reference/system/sample.h"
 #include "problem/system/input_error.h"
 #include "problem/system/progress.h"

@@ -3,6 +3,7 @@
 
 #include <functional>
 
+#include "fem_reference/elements/cell_equations.h"
 #include "fem_reference/exchange/request.h"
 #include "meshes/vtu.h"
 
@@ -34,6 +35,24 @@ struct GridProblem : CommonProblem {
   VtuNotes vtu_notes;        ///< what it says of itself
   bool own_memory = false;   ///< Solution::memory_MiB is the growth due to this grid
 };
+
+/// The laws of the materials of a body, of cells by their number in Mesh::materials: in the body's own material, then
+/// in those of its regions.  Each has the form that is right for it alone.
+/// @param law none: small strain
+inline std::vector<CellLaw> laws_of(const GridProblem& problem, std::optional<Law> law, bool tetrahedra) {
+  std::vector<CellLaw> laws;
+  for (unsigned int number = 0; number <= problem.regions.size(); ++number) {
+    const IsotropicMaterial& m = problem.material_of(number);
+    CellLaw& own = laws.emplace_back(
+        CellLaw{law, form_for({tetrahedra, problem.degree}, m.poisson_ratio, !law), shear_modulus(m), lame_lambda(m)});
+    own.pointwise = pointwise_part(tetrahedra, own);
+    own.density = m.density;
+  }
+  return laws;
+}
+
+/// The form of a body of these materials.
+inline Form form_of(const std::vector<CellLaw>& laws) { return any_mixed(laws) ? Form::mixed : laws.front().form; }
 
 /// True of straight hexahedra, which are refined: each of several processes stores the whole mesh.  Of any other, which
 /// is divided, the first process has the mesh and the others one without cells.

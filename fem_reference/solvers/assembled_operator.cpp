@@ -203,7 +203,9 @@ CellPressures AssembledOperator::pressures(const MixedVector& x) const {
   return all;
 }
 
-ElasticAnswer solve(const ElasticSystem& system, const DofVector& load, DofVector& displacement) {
+namespace {
+
+ElasticAnswer solve_elastic(const ElasticSystem& system, const DofVector& load, DofVector& displacement) {
   start_mpi();
   AssembledOperator K(system, std::nullopt);
   ElasticAnswer answer = solve_linear(K, system, load, displacement);
@@ -211,13 +213,17 @@ ElasticAnswer solve(const ElasticSystem& system, const DofVector& load, DofVecto
   return answer;
 }
 
-FiniteAnswer solve(const ElasticSystem& system, const FiniteProblem& problem, const DofVector& load,
-                   DofVector& displacement) {
+FiniteAnswer solve_finite(const ElasticSystem& system, const FiniteProblem& problem, const DofVector& load,
+                          DofVector& displacement) {
   start_mpi();
   AssembledOperator K(system, problem.law);
   FiniteAnswer answer = Newton<AssembledOperator>(K, system, problem, load).solve(displacement);
   answer.method = "Newton, GMRES, " + K.preconditioner();
   return answer;
 }
+
+}  // namespace
+
+extern const Solvers solvers = {solve_elastic, solve_finite};
 
 }  // namespace springproof::fem::assembled

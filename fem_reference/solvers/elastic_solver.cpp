@@ -120,9 +120,7 @@ FiniteAnswer finite_strain(const ElasticSystem& system, const FiniteProblem& pro
   return Newton<TangentOperator<degree>>(K, system, problem, load).solve(displacement);
 }
 
-}  // namespace
-
-ElasticAnswer solve(const ElasticSystem& system, const DofVector& load, DofVector& displacement) {
+ElasticAnswer solve_elastic(const ElasticSystem& system, const DofVector& load, DofVector& displacement) {
   const bool tetrahedra = system.body.has_tetrahedra();
   ElasticAnswer answer = tetrahedra           ? solve_linear(TetrahedraOperator(system), system, load, displacement)
                          : system.degree == 1 ? small_strain<1>(system, load, displacement)
@@ -132,12 +130,16 @@ ElasticAnswer solve(const ElasticSystem& system, const DofVector& load, DofVecto
   return answer;
 }
 
-FiniteAnswer solve(const ElasticSystem& system, const FiniteProblem& problem, const DofVector& load,
-                   DofVector& displacement) {
+FiniteAnswer solve_finite(const ElasticSystem& system, const FiniteProblem& problem, const DofVector& load,
+                          DofVector& displacement) {
   FiniteAnswer answer = system.degree == 1 ? finite_strain<1>(system, problem, load, displacement)
                                            : finite_strain<2>(system, problem, load, displacement);
   answer.method = "Newton, GMRES, matrix-free multigrid";
   return answer;
 }
+
+}  // namespace
+
+extern const Solvers solvers = {solve_elastic, solve_finite};
 
 }  // namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE
