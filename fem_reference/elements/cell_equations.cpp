@@ -140,6 +140,23 @@ void add_stress_stiffness(const CellShape& shape, const std::vector<Matrix3d>& S
       for (int c = 0; c < 3; ++c) K(3 * a + c, 3 * b + c) += s(a, b);
 }
 
+// F in the middle of a step, and the change of the deviatoric strain over it, at all quadrature points.
+struct ShearOfStep {
+  std::vector<Matrix3d> F, change;
+
+  ShearOfStep(const CellLaw& law, const CellShape& shape, const Eigen::MatrixXd& before,
+              const Eigen::MatrixXd& middle) {
+    const auto h = gradients_of(shape, middle), half = gradients_of(shape, middle - before);
+    for (int q = 0; q < shape.points(); ++q) {
+      F.push_back(Matrix3d::Identity());
+      if (law.law) F[q] += h.middleRows<3>(3 * q).transpose();
+      const Matrix3d product = F[q].transpose() * half.middleRows<3>(3 * q).transpose();
+      change.push_back(product + product.transpose());  // exact: strain is quadratic
+      change[q].diagonal().array() -= change[q].trace() / 3;
+    }
+  }
+};
+
 }  // namespace
 
 double pointwise_part(bool tetrahedra, const CellLaw& law) {
@@ -312,27 +329,6 @@ void add_viscosity(const CellLaw& law, const CellShape& shape, const Eigen::Matr
     traces = (Eigen::VectorXd::Ones(points) * (shape.weights.transpose() * traces / shape.weights.sum())).eval();
   tangent->uu += viscosity * per_rate * lambda * (traces.transpose() * (weights * traces));
 }
-
-namespace {
-
-// F in the middle of a step, and the change of the deviatoric strain over it, at all quadrature points.
-struct ShearOfStep {
-  std::vector<Matrix3d> F, change;
-
-  ShearOfStep(const CellLaw& law, const CellShape& shape, const Eigen::MatrixXd& before,
-              const Eigen::MatrixXd& middle) {
-    const auto h = gradients_of(shape, middle), half = gradients_of(shape, middle - before);
-    for (int q = 0; q < shape.points(); ++q) {
-      F.push_back(Matrix3d::Identity());
-      if (law.law) F[q] += h.middleRows<3>(3 * q).transpose();
-      const Matrix3d product = F[q].transpose() * half.middleRows<3>(3 * q).transpose();
-      change.push_back(product + product.transpose());  // exact: strain is quadratic
-      change[q].diagonal().array() -= change[q].trace() / 3;
-    }
-  }
-};
-
-}  // namespace
 
 void add_relaxation(const CellLaw& law, const CellShape& shape, const Eigen::MatrixXd& before, const Eigen::MatrixXd& u,
                     const std::vector<RelaxingStep>& branches, const Overstrains& overstrains, CellVector& residual,

@@ -182,7 +182,7 @@ bool AssembledOperator::factorise(const MixedVector& x) {
 
 void AssembledOperator::clear_constrained(DofVector& f) const {
   for (const unsigned int i : system_.constrained)
-    if (spaces_->u_dofs.owned.is_element(i)) f(i) = 0;
+    if (f.in_local_range(i)) f(i) = 0;
 }
 
 CellPressures AssembledOperator::pressures(const MixedVector& x) const {
