@@ -6,7 +6,6 @@
 
 #include "msm/algebra/direct_solver.h"
 #include "msm/algebra/krylov.h"
-#include "msm/multigrid/chebyshev.h"
 #include "msm/multigrid/lattice_operator.h"
 #include "msm/multigrid/thin_parts.h"
 #include "msm/multigrid/v_cycle.h"

@@ -7,7 +7,7 @@
 #include "msm/algebra/noise.h"
 #include "msm/kernels/list_stiffness.h"
 #include "msm/laws/capabilities.h"
-#include "msm/multigrid/chebyshev.h"
+#include "msm/multigrid/v_cycle.h"
 #include "msm/parameters/calibrate.h"
 #include "msm/topology/cubic_lattice.h"
 
