@@ -83,7 +83,6 @@ class CellForces : public BlockForces<Real> {
   void store_bonds(const Network& network);
   CellList<Real> part_of_list(long begin, long end);
   void place_carried(const Padded<Real>* x, const Padded<Real>* s);
-  void add_cells(long begin, long end, const Padded<Real>* x, const Padded<Real>* s, Padded<Real>* f);
   void add_anchors(long begin, long end, const Padded<Real>* x, Padded<Real>* f) const;
   void add_bonds(long begin, long end, const Padded<Real>* x, Padded<Real>* f) const;
 
