@@ -12,7 +12,7 @@ namespace springproof {
 template <class Vector>
 void clear_fixed(const std::vector<char>& fixed, Vector& v) {
   for (std::size_t i = 0; i < fixed.size(); ++i)
-    if (fixed[i]) v[static_cast<std::ptrdiff_t>(i)] = 0;
+    if (fixed[i]) v.data()[i] = 0;
 }
 
 /// The same vector as a matrix with a row for each point.
