@@ -36,7 +36,6 @@ struct SmoothingLevel {
 
   /// Estimates largest_eigenvalue by Lanczos steps, at most `at_most`.
   void bound_eigenvalues(double at_most);
-  void find_thin_parts(const CellMatrix& cell);
 
   LatticeOperator<float> K;
   Eigen::VectorXf inverse_diagonal;  ///< 0 on fixed unknowns
