@@ -301,8 +301,7 @@ void CellForces<Real>::at(const NodalVectors& x, const NodalVectors& v, NodalVec
   }
   add(u.data(), s.data(), on.data(), false);
   f.resize(x.rows(), 3);
-  for (std::size_t p = 0; p < order.size(); ++p)
-    for (int d = 0; d < 3; ++d) f(order[p], d) = on[p].v[d];
+  by_node(order, on, 1, f.data());
 }
 
 template class CellForces<double>;

@@ -7,28 +7,6 @@
 #include "msm/laws/capabilities.h"
 
 namespace springproof {
-template <class Real>
-void by_place(const SpringBlocks& blocks, const double* v, double factor, std::vector<Padded<Real>>& out) {
-  out.resize(blocks.order.size());
-  for (std::size_t p = 0; p < out.size(); ++p) {
-    const double* from = v + 3 * blocks.order[p];
-    out[p] = {{static_cast<Real>(factor * from[0]), static_cast<Real>(factor * from[1]),
-               static_cast<Real>(factor * from[2]), 0}};
-  }
-}
-
-template <class Real>
-void by_node(const SpringBlocks& blocks, const std::vector<Padded<Real>>& v, double factor, double* out) {
-  for (std::size_t p = 0; p < v.size(); ++p) {
-    double* to = out + 3 * blocks.order[p];
-    for (int d = 0; d < 3; ++d) to[d] = factor * v[p].v[d];
-  }
-}
-
-template void by_place<double>(const SpringBlocks&, const double*, double, std::vector<Padded<double>>&);
-template void by_place<float>(const SpringBlocks&, const double*, double, std::vector<Padded<float>>&);
-template void by_node<double>(const SpringBlocks&, const std::vector<Padded<double>>&, double, double*);
-template void by_node<float>(const SpringBlocks&, const std::vector<Padded<float>>&, double, double*);
 
 template <class Real>
 ListDispersionData<Real>::ListDispersionData(const MomentumDispersion& law, const Network& network,
@@ -108,11 +86,11 @@ void ListForces<Real>::add_blocks(long begin, long end, const Padded<Real>* x, c
 
 template <class Real>
 void ListForces<Real>::at(const NodalVectors& x, NodalVectors& f) {
-  by_place(blocks_, x.data(), 1, x_);
+  by_place(blocks_.order, x.data(), 1, x_);
   std::fill(f_.begin(), f_.end(), Padded<Real>{});
   add(x_.data(), nullptr, f_.data(), false);
   f.resize(x.rows(), 3);
-  by_node(blocks_, f_, 1, f.data());
+  by_node(blocks_.order, f_, 1, f.data());
 }
 
 template class ListForces<double>;

@@ -24,12 +24,6 @@ struct ListDispersionData {
   void share(std::vector<Real>& J) const;  ///< assigns the sum of J over a group to all its members
 };
 
-/// Converts vectors of 3 n in the network's order, times `factor`, to vectors by place, and back.
-template <class Real>
-void by_place(const SpringBlocks& blocks, const double* v, double factor, std::vector<Padded<Real>>& out);
-template <class Real>
-void by_node(const SpringBlocks& blocks, const std::vector<Padded<Real>>& v, double factor, double* out);
-
 /// Internal forces of a model of springs, with or without momentum dispersion; keeps no reference to the model.
 /// Real = double: equal to forces() (msm/laws/laws.h) to 1e-12 of the largest force; float: 1e-5 at strains of a few
 /// percent.

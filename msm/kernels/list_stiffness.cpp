@@ -61,11 +61,11 @@ void ListStiffness<Real>::add(const Padded<Real>* u, Padded<Real>* y) const {
 
 template <class Real>
 void ListStiffness<Real>::multiply(const Eigen::VectorXd& u, Eigen::VectorXd& y) const {
-  by_place(*blocks_, u.data(), 1, u_);
+  by_place(blocks_->order, u.data(), 1, u_);
   y_.assign(u_.size(), Padded<Real>{});
   add(u_.data(), y_.data());
   y.resize(u.size());
-  by_node(*blocks_, y_, 1, y.data());
+  by_node(blocks_->order, y_, 1, y.data());
 }
 
 namespace {

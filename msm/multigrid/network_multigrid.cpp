@@ -170,7 +170,7 @@ class ListSmoother : public NetworkSmoother {
   void before(const Eigen::VectorXd& b, Eigen::VectorXd& r) override {
     const double largest = b.lpNorm<Eigen::Infinity>();
     scale_ = largest > 0 ? largest : 1;
-    by_place(*blocks_, b.data(), 1 / scale_, r_);
+    by_place(blocks_->order, b.data(), 1 / scale_, r_);
     clear(x_);
     clear(y_);
     for (int k = 1; k <= degree; ++k) {
@@ -180,11 +180,11 @@ class ListSmoother : public NetworkSmoother {
     for (std::size_t p = 0; p < r_.size(); ++p)
       for (int d = 0; d < 3; ++d) z_[p].v[d] = r_[p].v[d] - y_[p].v[d];
     r.resize(b.size());
-    by_node(*blocks_, z_, scale_, r.data());
+    by_node(blocks_->order, z_, scale_, r.data());
   }
 
   void after(const Eigen::VectorXd& correction, Eigen::VectorXd& x) override {
-    by_place(*blocks_, correction.data(), unit_ / scale_, z_);
+    by_place(blocks_->order, correction.data(), unit_ / scale_, z_);
     for (std::size_t p = 0; p < x_.size(); ++p)
       for (int d = 0; d < 3; ++d) x_[p].v[d] += z_[p].v[d];
     K_.add(z_.data(), y_.data());  // in addition to K z from before()
@@ -193,7 +193,7 @@ class ListSmoother : public NetworkSmoother {
       if (k < degree) K_.add(z_.data(), y_.data());
     }
     x.resize(correction.size());
-    by_node(*blocks_, x_, scale_ / unit_, x.data());
+    by_node(blocks_->order, x_, scale_ / unit_, x.data());
   }
 
  private:
@@ -212,7 +212,7 @@ class ListSmoother : public NetworkSmoother {
   }
 
   double power_estimate() {
-    by_place(*blocks_, rough(static_cast<Eigen::Index>(3 * z_.size())).data(), 1, r_);
+    by_place(blocks_->order, rough(static_cast<Eigen::Index>(3 * z_.size())).data(), 1, r_);
     clear(y_);
     smooth(ChebyshevStep(0.0, 1.0));
     double estimate = 1;
