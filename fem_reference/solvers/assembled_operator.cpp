@@ -22,7 +22,7 @@ AssembledOperator::AssembledOperator(const ElasticSystem& system, std::optional<
   }
   if (law_ || spaces_->mixed()) {
     matrices_ = std::make_unique<Matrices>(*spaces_);
-    MixedVector f = vector();
+    MixedField f = vector();
     linearise(f, state_);
   }
 }
@@ -72,9 +72,9 @@ void AssembledOperator::assemble_mass() {
   for (double& m : inverse_mass_) m = 1 / m;
 }
 
-MixedVector AssembledOperator::vector() const { return spaces_->vector(); }
+MixedField AssembledOperator::vector() const { return spaces_->vector(); }
 
-double AssembledOperator::linearise(MixedVector& f, const MixedVector& x) {
+double AssembledOperator::linearise(MixedField& f, const MixedField& x) {
   state_ = x;
   state_.u.update_ghost_values();
   if (spaces_->mixed()) state_.p.update_ghost_values();
@@ -99,8 +99,8 @@ double AssembledOperator::linearise(MixedVector& f, const MixedVector& x) {
 }
 
 // Cells on which x is zero are skipped: Newton applies this to boundary values, the linear solver to all unknowns.
-void AssembledOperator::apply(MixedVector& f, const MixedVector& x) const {
-  MixedVector from = x;
+void AssembledOperator::apply(MixedField& f, const MixedField& x) const {
+  MixedField from = x;
   from.u.update_ghost_values();
   if (spaces_->mixed()) from.p.update_ghost_values();
   f.sadd(0, 0, f);
@@ -126,7 +126,7 @@ void AssembledOperator::apply(MixedVector& f, const MixedVector& x) const {
   if (spaces_->mixed()) f.p.compress(dealii::VectorOperation::add);
 }
 
-void AssembledOperator::vmult(MixedVector& y, const MixedVector& x) const {
+void AssembledOperator::vmult(MixedField& y, const MixedField& x) const {
   // Constrained rows and columns of every matrix are zero except for the diagonal.
   (law_ ? matrices_->uu : smoothed_)->multiply(y.u, x.u);
   if (spaces_->mixed()) {
@@ -163,7 +163,7 @@ void AssembledOperator::precondition_pressure(DofVector& y, const DofVector& x) 
   y *= 1 / compliance(system_.law_of(0, law_));
 }
 
-void AssembledOperator::prepare(const MixedVector& x) {
+void AssembledOperator::prepare(const MixedField& x) {
   const int cycles = std::exchange(cycles_, 0);
   if (cycles_when_new_ == 0) cycles_when_new_ = cycles;
   if (cycles <= 2 * cycles_when_new_ + 10) return;
@@ -171,7 +171,7 @@ void AssembledOperator::prepare(const MixedVector& x) {
   cycles_when_new_ = 0;
 }
 
-bool AssembledOperator::factorise(const MixedVector& x) {
+bool AssembledOperator::factorise(const MixedField& x) {
   if (!coarse_ || system_.dof_handler.n_dofs() > most_factored_for_thin_bodies) return false;
   coarse_.reset();
   most_factored_ = most_factored_for_thin_bodies;
@@ -185,8 +185,8 @@ void AssembledOperator::clear_constrained(DofVector& f) const {
     if (f.in_local_range(i)) f(i) = 0;
 }
 
-CellPressures AssembledOperator::pressures(const MixedVector& x) const {
-  MixedVector from = x;
+CellPressures AssembledOperator::pressures(const MixedField& x) const {
+  MixedField from = x;
   from.p.update_ghost_values();
   const dealii::FiniteElement<3>& fe = spaces_->p.get_fe();
   const std::vector<dealii::Point<3>> corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};

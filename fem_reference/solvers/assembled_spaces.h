@@ -83,18 +83,18 @@ struct AssembledOperator::Spaces {
     return at_nodes;
   }
 
-  CellVector read(const MixedVector& x) const {
+  CellVector read(const MixedField& x) const {
     CellVector c{displacement(x.u), Eigen::VectorXd(p_indices.size())};
     for (std::size_t f = 0; f < p_indices.size(); ++f) c.p[f] = x.p(p_indices[f]);
     return c;
   }
 
-  void add(const CellVector& c, MixedVector& f) const {
+  void add(const CellVector& c, MixedField& f) const {
     for (std::size_t i = 0; i < u_indices.size(); ++i) f.u(u_indices[i]) += c.u(i / 3, i % 3);
     for (std::size_t k = 0; k < p_indices.size(); ++k) f.p(p_indices[k]) += c.p[k];
   }
 
-  MixedVector vector() const { return {zero_vector(u), mixed() ? zero_vector(p) : DofVector()}; }
+  MixedField vector() const { return {zero_vector(u), mixed() ? zero_vector(p) : DofVector()}; }
 
   // Stiffness of the undeformed body (nullptr), or of the deformed one.
   void assemble_stiffness(const DofVector* deformed_by, SparseMatrix& matrix) {

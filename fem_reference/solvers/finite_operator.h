@@ -26,24 +26,24 @@ class FiniteOperator : public OperatorWithPressures<degree, FiniteOperator<degre
         mu_(system.mu),
         table_(base_.cells().n_cell_batches() * points * entries * Lane::size()) {}
 
-  void prepare(const MixedVector& x) { this->multigrid_.deform(x.u); }
+  void prepare(const MixedField& x) { this->multigrid_.deform(x.u); }
 
   /// Residual at x, on all degrees of freedom, and the tangent that vmult uses from then on.  Returns the
   /// smallest det F at quadrature points; f and the tangent are valid only if it is positive.
-  double linearise(MixedVector& f, const MixedVector& x) {
+  double linearise(MixedField& f, const MixedField& x) {
     double smallest = std::numeric_limits<double>::infinity();
     this->loop(f, x, [&](Cell& u, unsigned int batch, const Pressures& p) { return evaluate(u, batch, p, smallest); });
     return dealii::Utilities::MPI::min(smallest, base_.cells().get_dof_handler().get_communicator());
   }
 
   /// Tangent times x, on all degrees of freedom.
-  void apply(MixedVector& y, const MixedVector& x) const {
+  void apply(MixedField& y, const MixedField& x) const {
     this->loop(y, x, [&](Cell& u, unsigned int batch, const Pressures& p) { return tangent(u, batch, p); });
   }
 
   /// f = the forces of increments of pressure alone, where not constrained.
   void couple(Vector<double>& f, const Vector<double>& p) const {
-    MixedVector x = this->vector(), y = x;
+    MixedField x = this->vector(), y = x;
     x.p = p;
     this->vmult(y, x);
     f = y.u;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "fem_reference/grid/processes.h"
-#include "fem_reference/solvers/mixed_vector.h"
+#include "fem_reference/solvers/mixed_field.h"
 #include "fem_reference/solvers/stiffness.h"
 #include "fem_reference/solvers/v_cycle.h"
 #include "fem_reference/system/elastic_system.h"
@@ -94,27 +94,27 @@ class OperatorWithPressures {
   using Cell = typename Base::Cell;
   using Lane = Lanes<double>;
 
-  MixedVector vector() const {
-    MixedVector x;
+  MixedField vector() const {
+    MixedField x;
     x.u = base_.vector();
     if (mixed()) x.p.reinit(pressure_.inverse_mass);
     return x;
   }
 
   /// The same as apply(), with constrained rows and columns set to zero.
-  void vmult(MixedVector& y, const MixedVector& x) const {
+  void vmult(MixedField& y, const MixedField& x) const {
     base_.without_constrained(x.u, [&] { static_cast<const Own&>(*this).apply(y, x); });
     base_.clear_constrained(y.u);
   }
 
   void clear_constrained(Vector<double>& f) const { base_.clear_constrained(f); }
-  CellPressures pressures(const MixedVector& x) const { return pressure_.per_cell(base_.cells(), x.p); }
+  CellPressures pressures(const MixedField& x) const { return pressure_.per_cell(base_.cells(), x.p); }
   void precondition_displacement(Vector<double>& z, const Vector<double>& r) const { multigrid_.vmult(z, r); }
   /// Multiplies by (M (1/lambda + 1/(2 mu)))^-1, an approximate inverse of the Schur complement.
   void precondition_pressure(Vector<double>& y, const Vector<double>& x) const {
     if (mixed()) pressure_.divide_by_mass(1 / (1 / lambda_ + 0.5 / base_.coefficients().mu), x, y);
   }
-  bool factorise(const MixedVector&) { return false; }
+  bool factorise(const MixedField&) { return false; }
 
  protected:
   using Pressures = typename PressureSpace<degree>::Coefficients;  // of a batch of cells
@@ -130,7 +130,7 @@ class OperatorWithPressures {
 
   // y from the gradients of x.u: at_cell(u, batch, p) submits the stress and returns the residuals of the pressures p.
   template <typename AtCell>
-  void loop(MixedVector& y, const MixedVector& x, const AtCell& at_cell) const {
+  void loop(MixedField& y, const MixedField& x, const AtCell& at_cell) const {
     const std::function<void(const typename Base::Cells&, Vector<double>&, const Vector<double>&,
                              const typename Base::Range&)>
         add = [&](const auto& cells, Vector<double>& force, const Vector<double>& displacement, const auto& range) {
@@ -176,7 +176,7 @@ class LinearOperator : public OperatorWithPressures<degree, LinearOperator<degre
                {system.mu, system.form == Form::mixed ? 0 : system.lambda, system.form == Form::mean_dilatation}) {}
 
   /// The internal force of every degree of freedom, and the integrals of (div u - p / lambda) q.
-  void apply(MixedVector& y, const MixedVector& x) const {
+  void apply(MixedField& y, const MixedField& x) const {
     if (!mixed()) return base_.apply(y.u, x.u);
     this->loop(y, x, [&](Cell& u, unsigned int, const Pressures& p) { return submit(u, p); });
   }

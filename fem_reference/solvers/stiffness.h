@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "fem_reference/solvers/mixed_vector.h"
+#include "fem_reference/solvers/mixed_field.h"
 
 namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE {
 
