@@ -2,6 +2,7 @@
 #pragma once
 
 #include "msm/kernels/aligned_array.h"
+#include "msm/kernels/block_forces.h"
 #include "msm/kernels/kernels.h"
 #include "msm/laws/laws.h"
 #include "problem/relaxation.h"
