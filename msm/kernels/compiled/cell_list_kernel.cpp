@@ -4,7 +4,6 @@
 
 #include "msm/kernels/compiled/listed_cells.h"
 #include "msm/kernels/compiled/measured_cells.h"
-#include "msm/kernels/compiled/padded_nodes.h"
 
 namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE {
 namespace {

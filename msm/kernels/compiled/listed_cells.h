@@ -3,7 +3,7 @@
 #pragma once
 
 #include "msm/kernels/compiled/averaged_cells.h"
-#include "msm/kernels/list_kernels.h"
+#include "msm/kernels/compiled/padded_nodes.h"
 
 namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE {
 
