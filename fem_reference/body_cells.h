@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -30,6 +31,41 @@ struct Viscous {
   bool acts() const { return time * per_rate > 0; }
 };
 
+/// A cell, and its place in the equations.
+struct BodyCell {
+  unsigned int material = 0;  ///< number in Mesh::materials
+  CellShape shape;
+  Eigen::MatrixXd mass;                  ///< consistent, with what is attached, of one component [kg]
+  std::vector<Eigen::Index> u;           ///< 3 a + i: component i of node a
+  std::vector<Eigen::Index> p;           ///< pressures
+  std::vector<PetscInt> rows_u, rows_p;  ///< in the matrix; -1: held
+  Overstrains overstrains = {};          ///< of the branches at the end of the last step
+};
+
+/// The equations of a body with mass: of free displacements, and after them of the pressures of the mixed form.
+class BodyEquations {
+ public:
+  /// Keeps references to all but `held`.
+  /// @param points of the quadrature (cell_quadrature())
+  BodyEquations(const GridProblem& problem, const Body3& body, const dealii::DoFHandler<3>& dof_handler,
+                const std::vector<Prescribed>& held, const std::vector<CellLaw>& laws, unsigned int points);
+
+  void for_each_cell(const std::function<void(BodyCell&&)>& visit) const;
+  PetscInt unknowns() const { return displacements + pressures; }
+  std::unique_ptr<SparseMatrix> matrix() const;  ///< with the entries that cells couple, all zero
+
+  std::vector<PetscInt> number;  ///< of each degree of freedom among the free ones; -1: held
+  PetscInt displacements = 0, pressures = 0;
+
+ private:
+  const GridProblem& problem_;
+  const Body3& body_;
+  const dealii::DoFHandler<3>& u_;
+  std::optional<dealii::DoFHandler<3>> p_;
+  const std::vector<CellLaw>& laws_;
+  unsigned int points_;
+};
+
 /// The cells of a body with their equations: consistent mass, internal force, and the factors of the tangent.
 class BodyCells {
  public:
@@ -37,10 +73,10 @@ class BodyCells {
             const std::vector<Prescribed>& held);
 
   Unknowns zero() const {
-    return {Eigen::VectorXd::Zero(Eigen::Index(number_.size())), Eigen::VectorXd::Zero(pressures_)};
+    return {Eigen::VectorXd::Zero(Eigen::Index(component_.size())), Eigen::VectorXd::Zero(equations_.pressures)};
   }
-  Eigen::Index unknowns() const { return free_ + pressures_; }
-  bool is_free(Eigen::Index dof) const { return number_[dof] >= 0; }
+  Eigen::Index unknowns() const { return equations_.unknowns(); }
+  bool is_free(Eigen::Index dof) const { return equations_.number[dof] >= 0; }
   int component(Eigen::Index dof) const { return component_[dof]; }
   std::string form() const { return form_; }
 
@@ -62,16 +98,7 @@ class BodyCells {
   Unknowns correction(const Unknowns& r) const;
 
  private:
-  struct Cell {
-    unsigned int material;  ///< number in Mesh::materials
-    CellShape shape;
-    Eigen::MatrixXd mass;                  ///< of one component [kg]
-    std::vector<Eigen::Index> u;           ///< 3 a + i: component i of node a
-    std::vector<Eigen::Index> p;           ///< pressures
-    std::vector<PetscInt> rows_u, rows_p;  ///< in the matrix; -1: held
-    Overstrains overstrains;               ///< of the branches at the end of the last step
-  };
-  CellVector read(const Cell& cell, const Unknowns& x) const;
+  CellVector read(const BodyCell& cell, const Unknowns& x) const;
   std::vector<RelaxingStep> branches_over(const Viscous& step) const;
   static Unknowns rate_of(const Unknowns& x, const Viscous& viscous) {
     return {viscous.acts() ? Eigen::VectorXd(viscous.per_rate * (x.u - viscous.before)) : x.u, x.p};
@@ -80,11 +107,9 @@ class BodyCells {
   std::vector<CellLaw> laws_;  ///< by material
   Relaxation relaxation_;
   std::string form_;
-  std::vector<Cell> cells_;
-  std::vector<PetscInt> number_;  ///< of each degree of freedom among the free ones; -1: held
-  std::vector<int> component_;    ///< of each degree of freedom
-  PetscInt free_ = 0;
-  Eigen::Index pressures_ = 0;
+  BodyEquations equations_;
+  std::vector<BodyCell> cells_;
+  std::vector<int> component_;  ///< of each degree of freedom
   std::unique_ptr<SparseMatrix> matrix_;
   std::unique_ptr<SymmetricFactors> factors_;
 };

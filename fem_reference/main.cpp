@@ -11,7 +11,6 @@
 #include "fem_reference/elements/element.h"
 #include "fem_reference/exchange/case_request.h"
 #include "fem_reference/exchange/exchange.h"
-#include "fem_reference/exchange/grid_meshes.h"
 #include "fem_reference/exchange/plain_words.h"
 #include "fem_reference/grid/processes.h"
 #include "fem_reference/solve_grid.h"
@@ -42,6 +41,7 @@ Request shared(const std::function<Request()>& make) {
 
 Solution solve_one(const Request& request, const Discretisation& grid, Method method) {
   GridProblem problem;
+  static_cast<CommonProblem&>(problem) = request;
   problem.method = method;
   problem.degree = element_named(grid.element).degree;
   problem.coarse = *request.meshes.at(grid.mesh);
@@ -49,17 +49,8 @@ Solution solve_one(const Request& request, const Discretisation& grid, Method me
   if (problem.coarse.grid)
     problem.place =
         graded(problem.coarse.nodes.colwise().minCoeff(), problem.coarse.nodes.colwise().maxCoeff(), grid.grading);
-  problem.law = request.law;
-  problem.material = request.material;
   problem.regions = materials_of(request.regions);
-  problem.loads = request.loads;
-  problem.points = request.points;
-  problem.stress_points = request.stress_points;
-  problem.tolerance = request.tolerance;
   problem.own_memory = request.cost;
-  problem.masses = request.masses;
-  problem.modes = request.modes;
-  problem.motion = request.motion;
   problem.steps = grid.steps;
   problem.vtu = grid.vtu;
   problem.vtu_notes = {

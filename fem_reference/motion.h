@@ -1,4 +1,4 @@
-// Motion in time by finite elements with consistent mass, on one grid.
+// Motion in time, and natural modes, by finite elements with consistent mass on one grid.
 #pragma once
 
 #include <deal.II/dofs/dof_handler.h>
@@ -17,5 +17,13 @@ namespace springproof::fem {
 /// @throws InputError for several processes.
 void solve_motion(const GridProblem& problem, const Body3& body, const dealii::DoFHandler<3>& dof_handler,
                   Solution& solution);
+
+/// The problem's first `modes` natural modes, its supports at rest and its other loads left out: SLEPc's Krylov-Schur
+/// method about a shift below zero (MUMPS); that no eigenvalue was passed over follows from the inertia of K - sigma M
+/// above the last.  In the mixed form (element.h) the pressures are unknowns without mass: a saddle point, about a
+/// shift below zero quasi-definite.  Sets the frequencies, shapes, residual and description of the solution.
+/// @throws InputError for several processes.
+void solve_modes(const GridProblem& problem, const Body3& body, const dealii::DoFHandler<3>& dof_handler,
+                 Solution& solution);
 
 }  // namespace springproof::fem

@@ -1,8 +1,6 @@
-#include "fem_reference/natural_modes.h"
+#include "fem_reference/motion.h"
 
-#include <deal.II/fe/fe_values.h>
 #include <deal.II/grid/grid_tools.h>
-#include <deal.II/lac/dynamic_sparsity_pattern.h>
 #include <fmt/format.h>
 #include <slepceps.h>
 
@@ -10,13 +8,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "fem_reference/elements/cell_equations.h"
+#include "fem_reference/body_cells.h"
 #include "fem_reference/grid/processes.h"
-#include "fem_reference/solvers/multigrid.h"
 #include "fem_reference/solvers/petsc.h"
-#include "fem_reference/system/attached_mass.h"
 #include "fem_reference/system/boundary_conditions.h"
-#include "fem_reference/system/materials.h"
 #include "fem_reference/system/sample.h"
 #include "problem/system/input_error.h"
 #include "problem/system/progress.h"
@@ -29,40 +24,6 @@ constexpr int most_beyond = 48;            // where eigenvalues were missed, as 
 constexpr double eigen_tolerance = 1e-10;  // relative residual
 constexpr double rigid_below = 1e-7;       // of the largest eigenvalue computed: a rigid motion
 constexpr double least_gap = 1e-4;         // relative, between eigenvalues: none lies in it by accident
-
-/// Stiffness and consistent mass of the free displacements and, after them, of the pressures, which have no mass.
-struct Pencil {
-  std::vector<PetscInt> number;  ///< of each displacement among the free ones; -1: held
-  PetscInt displacements = 0, pressures = 0;
-  std::unique_ptr<SparseMatrix> K, M;
-
-  PetscInt unknowns() const { return displacements + pressures; }
-};
-
-/// Calls visit(cell, rows) with the pencil's rows of every cell: 3 a + i of component i of node a, then pressures.
-template <class Visit>
-void for_each_cell(const Pencil& pencil, const dealii::DoFHandler<3>& displacement,
-                   const dealii::DoFHandler<3>& pressure, const Visit& visit) {
-  const auto& fe = displacement.get_fe();
-  std::vector<dealii::types::global_dof_index> dofs(fe.n_dofs_per_cell()), pressure_dofs;
-  std::vector<PetscInt> rows;
-  for (const auto& cell : displacement.active_cell_iterators()) {
-    cell->get_dof_indices(dofs);
-    rows.resize(dofs.size());
-    for (unsigned int i = 0; i < dofs.size(); ++i) {
-      const auto [component, node] = fe.system_to_component_index(i);
-      rows[3 * node + component] = pencil.number[dofs[i]];
-    }
-    if (pencil.pressures > 0) {
-      pressure_dofs.resize(pressure.get_fe().n_dofs_per_cell());
-      dealii::DoFHandler<3>::active_cell_iterator(&pressure.get_triangulation(), cell->level(), cell->index(),
-                                                  &pressure)
-          ->get_dof_indices(pressure_dofs);
-      for (const auto dof : pressure_dofs) rows.push_back(pencil.displacements + PetscInt(dof));
-    }
-    visit(dealii::Triangulation<3>::cell_iterator(cell), rows);
-  }
-}
 
 /// Stiffness of a cell, its pressures in units of `unit` [Pa/m].
 CellMatrix stiffness_of(const CellLaw& law, const CellShape& shape, double unit) {
@@ -88,100 +49,57 @@ CellMatrix mass_of(const Eigen::MatrixXd& m, Eigen::Index pressures) {
   return M;
 }
 
-/// `pressure_unit`: of the unknown pressures [Pa/m], for numbers as large as the displacements'.
-Pencil assemble_pencil(const GridProblem& problem, const Body3& body, const dealii::DoFHandler<3>& dof_handler,
-                       const std::vector<CellLaw>& laws, double pressure_unit) {
-  Pencil pencil;
-  pencil.number.assign(dof_handler.n_dofs(), 0);
-  for (const Prescribed& p : prescribed(dof_handler, body, problem.loads)) pencil.number[p.dof] = -1;
-  for (PetscInt& n : pencil.number)
-    if (n == 0) n = pencil.displacements++;
+/// Stiffness and consistent mass of the free displacements and, after them, of the pressures, which have no mass.
+struct Pencil {
+  BodyEquations equations;
+  std::unique_ptr<SparseMatrix> K, M;
 
-  const auto scalar = scalar_element(body, problem.degree);
-  const dealii::Quadrature<3> quadrature = cell_quadrature(body, body.has_tetrahedra() ? 4 : problem.degree + 1);
-  const int nodes = int(scalar->n_dofs_per_cell()), points = int(quadrature.size());
-  CellShape shape{Eigen::MatrixXd(3 * points, nodes), Eigen::VectorXd(points), Eigen::MatrixXd(points, 0)};
-  dealii::DoFHandler<3> of_pressure(body.of_pressures());
-  if (any_mixed(laws)) {
-    const auto fe = pressure_element(body, problem.degree);
-    of_pressure.distribute_dofs(*fe);
-    pencil.pressures = PetscInt(of_pressure.n_dofs());
-    shape.pressures = values_at(*fe, quadrature);
-  }
-
-  dealii::DynamicSparsityPattern pattern(pencil.unknowns(), pencil.unknowns());
-  for_each_cell(pencil, dof_handler, of_pressure, [&](const auto&, const std::vector<PetscInt>& rows) {
-    std::vector<dealii::types::global_dof_index> free;
-    for (const PetscInt row : rows)
-      if (row >= 0) free.push_back(row);
-    std::sort(free.begin(), free.end());
-    for (const auto row : free) pattern.add_entries(row, free.begin(), free.end(), true);
-  });
-  const dealii::IndexSet all = dealii::complete_index_set(pencil.unknowns());
-  pencil.K = std::make_unique<SparseMatrix>(all, all, pattern, PETSC_COMM_SELF);
-  pencil.M = std::make_unique<SparseMatrix>(all, all, pattern, PETSC_COMM_SELF);
-
-  dealii::FEValues<3> values(*body.mapping, *scalar, quadrature, dealii::update_gradients | dealii::update_JxW_values);
-  const Eigen::MatrixXd N = values_at(*scalar, quadrature);
-  const auto attached = attached_mass(problem.masses, body, *scalar);
-  for_each_cell(pencil, dof_handler, of_pressure, [&](const auto& cell, const std::vector<PetscInt>& rows) {
-    values.reinit(cell);
-    const CellLaw& law = laws[cell->material_id()];
-    for (int q = 0; q < points; ++q) {
-      shape.weights[q] = values.JxW(q);
-      for (int a = 0; a < nodes; ++a)
-        for (int i = 0; i < 3; ++i) shape.gradients(3 * q + i, a) = values.shape_grad(a, q)[i];
+  /// @param pressure_unit of the unknown pressures [Pa/m], for numbers as large as the displacements'
+  Pencil(const GridProblem& problem, const Body3& body, const dealii::DoFHandler<3>& dof_handler,
+         const std::vector<CellLaw>& laws, double pressure_unit)
+      : equations(problem, body, dof_handler, prescribed(dof_handler, body, problem.loads), laws,
+                  body.has_tetrahedra() ? 4 : problem.degree + 1),
+        K(equations.matrix()),
+        M(equations.matrix()) {
+    equations.for_each_cell([&](const BodyCell& cell) {
+      const CellMatrix stiffness = stiffness_of(laws[cell.material], cell.shape, pressure_unit),
+                       mass = mass_of(cell.mass, cell.shape.pressures.cols());
+      std::vector<PetscInt> rows = cell.rows_u;
+      rows.insert(rows.end(), cell.rows_p.begin(), cell.rows_p.end());
+      K->add(rows, rows, stiffness.data());  // PETSc leaves out negative rows and columns
+      M->add(rows, rows, mass.data());
+    });
+    for (SparseMatrix* matrix : {K.get(), M.get()}) {
+      matrix->finish();
+      succeed(MatSetOption(matrix->petsc(), MAT_SYMMETRIC, PETSC_TRUE));
     }
-    const CellMatrix stiffness = stiffness_of(law, shape, pressure_unit);
-    Eigen::MatrixXd m = law.density * N.transpose() * shape.weights.asDiagonal() * N;
-    if (const auto more = attached.find(cell->active_cell_index()); more != attached.end()) m += more->second;
-    const CellMatrix mass = mass_of(m, shape.pressures.cols());
-    pencil.K->add(rows, rows, stiffness.data());  // PETSc leaves out negative rows and columns
-    pencil.M->add(rows, rows, mass.data());
-  });
-  pencil.K->finish();
-  pencil.M->finish();
-  for (const Mat matrix : {pencil.K->petsc(), pencil.M->petsc()})
-    succeed(MatSetOption(matrix, MAT_SYMMETRIC, PETSC_TRUE));
-  return pencil;
-}
+  }
+};
 
 /// Number of eigenvalues below sigma: that of negative pivots of K - sigma M (Sylvester), less one for each pressure,
 /// whose own block is negative.
 PetscInt eigenvalues_below(double sigma, const Pencil& pencil) {
-  Mat shifted = nullptr;
+  OwnedMat shifted;
   succeed(MatDuplicate(pencil.K->petsc(), MAT_COPY_VALUES, &shifted));
   succeed(MatAXPY(shifted, -sigma, pencil.M->petsc(), SAME_NONZERO_PATTERN));
-  const PetscInt negative = SymmetricFactors(shifted).negative_pivots();
-  succeed(MatDestroy(&shifted));
-  return negative - pencil.pressures;
+  return SymmetricFactors(shifted).negative_pivots() - pencil.equations.pressures;
 }
 
-/// An eigenvalue solver and its vectors; destroyed on every way out.
-struct Eigensolver {
-  EPS eps = nullptr;
-  Vec vector = nullptr;
-  Eigensolver() = default;
-  Eigensolver(const Eigensolver&) = delete;
-  Eigensolver& operator=(const Eigensolver&) = delete;
-  ~Eigensolver() {
-    VecDestroy(&vector);
-    EPSDestroy(&eps);
-  }
-};
+using Eigensolver = Owned<EPS, EPSDestroy>;
 
-void set_up(const Pencil& pencil, double target, Eigensolver& solver) {
+Eigensolver eigensolver(const Pencil& pencil, double target) {
+  Eigensolver eps;
   ST transformation = nullptr;
   KSP ksp = nullptr;
   PC factors = nullptr;
-  succeed(EPSCreate(PETSC_COMM_SELF, &solver.eps));
-  succeed(EPSSetOperators(solver.eps, pencil.K->petsc(), pencil.M->petsc()));
-  succeed(EPSSetProblemType(solver.eps, EPS_GHEP));
-  succeed(EPSSetType(solver.eps, EPSKRYLOVSCHUR));
-  succeed(EPSSetTolerances(solver.eps, eigen_tolerance, 500));
-  succeed(EPSSetTarget(solver.eps, target));
-  succeed(EPSSetWhichEigenpairs(solver.eps, EPS_TARGET_MAGNITUDE));
-  succeed(EPSGetST(solver.eps, &transformation));
+  succeed(EPSCreate(PETSC_COMM_SELF, &eps));
+  succeed(EPSSetOperators(eps, pencil.K->petsc(), pencil.M->petsc()));
+  succeed(EPSSetProblemType(eps, EPS_GHEP));
+  succeed(EPSSetType(eps, EPSKRYLOVSCHUR));
+  succeed(EPSSetTolerances(eps, eigen_tolerance, 500));
+  succeed(EPSSetTarget(eps, target));
+  succeed(EPSSetWhichEigenpairs(eps, EPS_TARGET_MAGNITUDE));
+  succeed(EPSGetST(eps, &transformation));
   succeed(STSetType(transformation, STSINVERT));
   succeed(STSetMatStructure(transformation, SAME_NONZERO_PATTERN));
   succeed(STGetKSP(transformation, &ksp));
@@ -189,14 +107,15 @@ void set_up(const Pencil& pencil, double target, Eigensolver& solver) {
   succeed(KSPGetPC(ksp, &factors));
   succeed(PCSetType(factors, PCCHOLESKY));
   succeed(PCFactorSetMatSolverType(factors, MATSOLVERMUMPS));
+  return eps;
 }
 
 /// Computes `count` modes; the matrix is factorised once.  Iterations.
-int solve(const Pencil& pencil, int count, Eigensolver& solver) {
+int solve(const Pencil& pencil, int count, EPS eps) {
   PetscInt iterations = 0;
-  succeed(EPSSetDimensions(solver.eps, count, std::min<PetscInt>(pencil.displacements, 3 * count), PETSC_DEFAULT));
-  succeed(EPSSolve(solver.eps));
-  succeed(EPSGetIterationNumber(solver.eps, &iterations));
+  succeed(EPSSetDimensions(eps, count, std::min<PetscInt>(pencil.equations.displacements, 3 * count), PETSC_DEFAULT));
+  succeed(EPSSolve(eps));
+  succeed(EPSGetIterationNumber(eps, &iterations));
   return int(iterations);
 }
 
@@ -248,42 +167,41 @@ void solve_modes(const GridProblem& problem, const Body3& body, const dealii::Do
   start_mpi();
   progress::detail(fmt::format("{} unknowns, natural modes", dof_handler.n_dofs()));
   const auto [low, high] = dealii::GridTools::compute_bounding_box(body.triangulation).get_boundary_points();
-  const Pencil pencil =
-      assemble_pencil(problem, body, dof_handler, laws, shear_modulus(problem.material) / low.distance(high));
+  const Pencil pencil(problem, body, dof_handler, laws, shear_modulus(problem.material) / low.distance(high));
   double slowest = shear_modulus(problem.material) / problem.material.density / low.distance_square(high);
   for (const IsotropicMaterial& m : problem.regions)
     slowest = std::min(slowest, shear_modulus(m) / m.density / low.distance_square(high));
-  Eigensolver solver;
-  set_up(pencil, -0.01 * slowest, solver);
+  const Eigensolver eps = eigensolver(pencil, -0.01 * slowest);
   solution.form = fmt::format("{}, consistent mass, Krylov-Schur", describe(element, form_of(laws)));
-  solution.unknowns = pencil.unknowns();
+  solution.unknowns = pencil.equations.unknowns();
   Spectrum spectrum;
   for (int beyond = modes_beyond; beyond <= most_beyond; beyond *= 2) {
-    const int count = int(std::min<PetscInt>(problem.modes + 6 + beyond, pencil.displacements));
-    solution.iterations += solve(pencil, count, solver);
-    spectrum = spectrum_of(solver.eps, problem.modes);
+    const int count = int(std::min<PetscInt>(problem.modes + 6 + beyond, pencil.equations.displacements));
+    solution.iterations += solve(pencil, count, eps);
+    spectrum = spectrum_of(eps, problem.modes);
     if (int(spectrum.found.size()) < count) {
       solution.message = fmt::format("{} of {} natural modes converged", spectrum.found.size(), count);
       return;
     }
     solution.message = missed(spectrum, pencil);
-    if (solution.message.empty() || count == pencil.displacements) break;
+    if (solution.message.empty() || count == pencil.equations.displacements) break;
   }
   if (!solution.message.empty()) return;
   const auto& [found, rigid, last, gap] = spectrum;
   const std::vector<Location> places = locate(body, problem.points);
-  succeed(MatCreateVecs(pencil.K->petsc(), &solver.vector, nullptr));
+  OwnedVec vector;
+  succeed(MatCreateVecs(pencil.K->petsc(), &vector, nullptr));
   for (std::size_t i = rigid; i < last; ++i) {
     PetscReal error = 0;
-    succeed(EPSComputeError(solver.eps, found[i].second, EPS_ERROR_RELATIVE, &error));
+    succeed(EPSComputeError(eps, found[i].second, EPS_ERROR_RELATIVE, &error));
     solution.residual = std::max(solution.residual, double(error));
-    succeed(EPSGetEigenvector(solver.eps, found[i].second, solver.vector, nullptr));
+    succeed(EPSGetEigenvector(eps, found[i].second, vector, nullptr));
     const PetscScalar* entries = nullptr;
-    succeed(VecGetArrayRead(solver.vector, &entries));
+    succeed(VecGetArrayRead(vector, &entries));
     DofVector u = zero_vector(dof_handler);
-    for (std::size_t dof = 0; dof < pencil.number.size(); ++dof)
-      if (pencil.number[dof] >= 0) u[dof] = entries[pencil.number[dof]];
-    succeed(VecRestoreArrayRead(solver.vector, &entries));
+    for (std::size_t dof = 0; dof < pencil.equations.number.size(); ++dof)
+      if (pencil.equations.number[dof] >= 0) u[dof] = entries[pencil.equations.number[dof]];
+    succeed(VecRestoreArrayRead(vector, &entries));
     u.update_ghost_values();
     solution.frequencies.push_back(std::sqrt(found[i].first) / (2 * std::numbers::pi));
     solution.shapes.push_back(displacement_at(places, dof_handler, u));

@@ -3,7 +3,6 @@
 #include <deal.II/base/multithread_info.h>
 #include <deal.II/base/revision.h>
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <cmath>
 #include <ctime>
@@ -14,13 +13,11 @@
 #include "fem_reference/grid/processes.h"
 #include "fem_reference/grid/triangulate.h"
 #include "fem_reference/motion.h"
-#include "fem_reference/natural_modes.h"
 #include "fem_reference/solvers/coarsest_level.h"
 #include "fem_reference/system/boundary_conditions.h"
 #include "fem_reference/system/elastic_system.h"
 #include "fem_reference/system/interfaces.h"
 #include "fem_reference/system/local_refinement.h"
-#include "fem_reference/system/materials.h"
 #include "fem_reference/system/sample.h"
 #include "meshes/quality.h"
 #include "meshes/volume.h"
@@ -30,47 +27,30 @@
 
 namespace springproof::fem {
 
-// The solvers: matrix-free, one per vector width (elastic_solver.cpp), and with assembled matrices
-// (assembled_operator.cpp).
+// Matrix-free, one per vector width (elastic_solver.cpp), and with assembled matrices (assembled_operator.cpp).
 namespace one_lane {
-ElasticAnswer solve(const ElasticSystem& system, const DofVector& load, DofVector& displacement);
-FiniteAnswer solve(const ElasticSystem& system, const FiniteProblem& problem, const DofVector& load,
-                   DofVector& displacement);
-}  // namespace one_lane
+extern const Solvers solvers;
+}
 namespace avx2 {
-ElasticAnswer solve(const ElasticSystem& system, const DofVector& load, DofVector& displacement);
-FiniteAnswer solve(const ElasticSystem& system, const FiniteProblem& problem, const DofVector& load,
-                   DofVector& displacement);
-}  // namespace avx2
-
+extern const Solvers solvers;
+}
 namespace assembled {
-ElasticAnswer solve(const ElasticSystem& system, const DofVector& load, DofVector& displacement);
-FiniteAnswer solve(const ElasticSystem& system, const FiniteProblem& problem, const DofVector& load,
-                   DofVector& displacement);
-}  // namespace assembled
+extern const Solvers solvers;
+}
 
 #ifdef SPRINGPROOF_HAVE_AVX2
 static bool processor_has_avx2() { return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"); }
 #endif
 
-ElasticAnswer solve_elastic(const ElasticSystem& system, const DofVector& load, DofVector& displacement) {
-  if (system.level_constrained.empty() && !system.below) return assembled::solve(system, load, displacement);
-#ifdef SPRINGPROOF_HAVE_AVX2
-  if (system.wide_vectors && processor_has_avx2()) return avx2::solve(system, load, displacement);
-#endif
-  return one_lane::solve(system, load, displacement);
-}
-
-FiniteAnswer solve_finite(const ElasticSystem& system, const FiniteProblem& problem, const DofVector& load,
-                          DofVector& displacement) {
-  if (system.level_constrained.empty()) return assembled::solve(system, problem, load, displacement);
-#ifdef SPRINGPROOF_HAVE_AVX2
-  if (system.wide_vectors && processor_has_avx2()) return avx2::solve(system, problem, load, displacement);
-#endif
-  return one_lane::solve(system, problem, load, displacement);
-}
-
 namespace {
+
+const Solvers& solvers_of(const ElasticSystem& system) {
+  if (system.level_constrained.empty() && !system.below) return assembled::solvers;
+#ifdef SPRINGPROOF_HAVE_AVX2
+  if (system.wide_vectors && processor_has_avx2()) return avx2::solvers;
+#endif
+  return one_lane::solvers;
+}
 
 /// A cell of VTK: its number, and for each of its nodes which shape function of deal.II is that node's.
 struct VtkCell {
@@ -129,12 +109,6 @@ void write_solution(const std::string& file, const NodalSolution& solution, cons
 
 double cpu_seconds() { return double(std::clock()) / CLOCKS_PER_SEC; }
 
-double peak_memory_MiB() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return usage.ru_maxrss / 1024.0;
-}
-
 // Matrix-free multigrid requires a coarse grid of few cells; other grids use algebraic multigrid.
 constexpr unsigned int largest_coarse_grid = 1000;  // cells
 // A coarsest level of cubes gets a coarse space of linear elements where that is cheaper than iterating on the level.
@@ -171,18 +145,14 @@ struct Discrete {
         system{
             body,
             dof_handler,
-            {},
-            {},
             problem.degree,
             form_for({body.has_tetrahedra(), problem.degree}, problem.material.poisson_ratio, problem.law == "linear"),
             shear_modulus(problem.material),
-            lame_lambda(problem.material),
-            problem.tolerance,
-            problem.wide_vectors,
-            problem.method == Method::assembled_gamg,
-            problem.method == Method::automatic ? most_factored_rows : 0,
-            {},
-            {}} {
+            lame_lambda(problem.material)} {
+    system.tolerance = problem.tolerance;
+    system.wide_vectors = problem.wide_vectors;
+    system.plain_gamg = problem.method == Method::assembled_gamg;
+    if (problem.method != Method::automatic) system.most_factored = 0;
     if (!problem.regions.empty()) {
       system.laws = laws_of(problem, law_named(problem.law), body.has_tetrahedra());
       system.form = form_of(system.laws);
@@ -214,7 +184,7 @@ void prescribe(const GridProblem& problem, const Discrete& discrete, Kinematics 
 
 ElasticAnswer solve_linear(const GridProblem& problem, const Discrete& discrete, DofVector& u, Solution& solution) {
   prescribe(problem, discrete, Kinematics::linear, 1, u);
-  const ElasticAnswer answer = solve_elastic(discrete.system, discrete.load, u);
+  const ElasticAnswer answer = solvers_of(discrete.system).elastic(discrete.system, discrete.load, u);
   solution.form = fmt::format("{}, {}", element_name(discrete.system), answer.method);
   if (!answer.converged)
     solution.message = fmt::format("the linear solver stopped at a relative residual of {:.2e}", answer.residual);
@@ -238,7 +208,7 @@ ElasticAnswer solve_nonlinear(const GridProblem& problem, const Discrete& discre
   FiniteProblem finite{
       *law, [&](double factor, DofVector& to) { prescribe(problem, discrete, Kinematics::finite, factor, to); }};
   finite.first_step = first_load_step(problem, discrete.system.body.has_tetrahedra());
-  const FiniteAnswer answer = solve_finite(discrete.system, finite, discrete.load, u);
+  const FiniteAnswer answer = solvers_of(discrete.system).finite(discrete.system, finite, discrete.load, u);
   solution.form = fmt::format("{}, {}: {} load steps, {} Newton steps", element_name(discrete.system), answer.method,
                               answer.load_steps, answer.newton_iterations);
   if (!answer.converged)

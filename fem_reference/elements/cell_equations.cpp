@@ -6,35 +6,18 @@ namespace springproof::fem {
 namespace {
 
 using Matrix3d = Eigen::Matrix3d;
-using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-// Material response at one quadrature point: stress S = S_shear + p Q, dilatation g, and their derivatives.
+// Material response at one quadrature point: stress S = S_shear + p Q, and its derivatives.
 struct PointResponse {
-  Matrix3d F;    // identity at small strain
-  Vector6 S, Q;  // xx yy zz xy yz xz
-  Vector6 G;     // dg / dE, for strains with engineering shears
-  Matrix6 D;     // dS / dE at fixed p
-  double g = 0;  // dilatation
+  Matrix3d F;  // identity at small strain
+  Voigt S, Q;
+  Voigt G;    // dg / dE, for strains with engineering shears
+  Matrix6 D;  // dS / dE at fixed p
 };
 
-Matrix3 to_array(const Matrix3d& F) {
-  Matrix3 f;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) f[i][j] = F(i, j);
-  return f;
-}
-
-Matrix3d tensor(const Vector6& s) {
-  Matrix3d t;
-  t << s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2];
-  return t;
-}
-
-Vector6 from_voigt(const Voigt& v) { return Eigen::Map<const Vector6>(v.data()); }
-
 double dilatation_at(const CellLaw& law, const Matrix3d& h) {
-  return law.law ? dilatation(*law.law, to_array(Matrix3d::Identity() + h)) : h.trace();
+  return law.law ? dilatation(*law.law, Matrix3d::Identity() + h) : h.trace();
 }
 
 // `derivatives`: whether Q, G and D are wanted of a law of large strain too.
@@ -47,20 +30,16 @@ PointResponse respond_at(const CellLaw& law, const Matrix3d& h, double p, bool d
     r.G = r.Q;
     r.S << strain(0, 0), strain(1, 1), strain(2, 2), strain(0, 1), strain(1, 2), strain(0, 2);
     r.S = 2 * law.mu * r.S + p * r.Q;
-    r.D = law.mu * (Vector6() << 2, 2, 2, 1, 1, 1).finished().asDiagonal();
+    r.D = law.mu * (Voigt() << 2, 2, 2, 1, 1, 1).finished().asDiagonal();
     return r;
   }
   r.F = Matrix3d::Identity() + h;
   if (!derivatives) {
-    r.S = from_voigt(stress(*law.law, law.mu, p, r.F.transpose() * r.F));
+    r.S = stress(*law.law, law.mu, p, r.F.transpose() * r.F);
     return r;
   }
-  const LawResponse response = respond(*law.law, law.mu, p, to_array(r.F));
-  r.S = from_voigt(response.S);
-  r.Q = from_voigt(response.Q);
-  r.G = 2 * from_voigt(response.G);  // dC = 2 dE
-  for (int i = 0; i < 6; ++i) r.D.row(i) = 2 * from_voigt(response.D[i]).transpose();
-  return r;
+  const LawResponse response = respond(*law.law, law.mu, p, r.F);
+  return {r.F, response.S, response.Q, 2 * response.G, 2 * response.D};  // dC = 2 dE
 }
 
 ValueAndSlope pressure_of(const CellLaw& law, double g) {
@@ -160,6 +139,23 @@ void add_stress_stiffness(const CellShape& shape, const std::vector<Matrix3d>& S
     for (int b = 0; b < n; ++b)
       for (int c = 0; c < 3; ++c) K(3 * a + c, 3 * b + c) += s(a, b);
 }
+
+// F in the middle of a step, and the change of the deviatoric strain over it, at all quadrature points.
+struct ShearOfStep {
+  std::vector<Matrix3d> F, change;
+
+  ShearOfStep(const CellLaw& law, const CellShape& shape, const Eigen::MatrixXd& before,
+              const Eigen::MatrixXd& middle) {
+    const auto h = gradients_of(shape, middle), half = gradients_of(shape, middle - before);
+    for (int q = 0; q < shape.points(); ++q) {
+      F.push_back(Matrix3d::Identity());
+      if (law.law) F[q] += h.middleRows<3>(3 * q).transpose();
+      const Matrix3d product = F[q].transpose() * half.middleRows<3>(3 * q).transpose();
+      change.push_back(product + product.transpose());  // exact: strain is quadratic
+      change[q].diagonal().array() -= change[q].trace() / 3;
+    }
+  }
+};
 
 }  // namespace
 
@@ -265,9 +261,8 @@ CellVector step_residual(const CellLaw& law, const CellShape& shape, const CellV
              shape.pressures.row(q).transpose();
     }
     const Matrix3d F0 = Matrix3d::Identity() + first.h[q], F1 = Matrix3d::Identity() + last.h[q];
-    const Vector6 S = mean_over(Matrix3d(F0.transpose() * F0), Matrix3d(F1.transpose() * F1), [&](const Matrix3d& C) {
-      return Vector6(from_voigt(springproof::fem::stress(*law.law, law.mu, p, C)));
-    });
+    const Voigt S = mean_over(Matrix3d(F0.transpose() * F0), Matrix3d(F1.transpose() * F1),
+                              [&](const Matrix3d& C) { return springproof::fem::stress(*law.law, law.mu, p, C); });
     stress.middleRows<3>(3 * q) = w / 2 * tensor(S) * (F0 + F1).transpose();
   }
   add_forces(shape, stress, r.u);
@@ -279,7 +274,7 @@ double cell_energy(const CellLaw& law, const CellShape& shape, const CellVector&
   double sum = 0;
   for (int q = 0; q < shape.points(); ++q) {
     const bool mixed = law.form == Form::mixed;
-    double energy = shear_energy(*law.law, law.mu, to_array(Matrix3d::Identity() + s.h[q])) +
+    double energy = shear_energy(*law.law, law.mu, Matrix3d::Identity() + s.h[q]) +
                     dilatation_energy(*law.law, mixed ? law.pointwise : law.lambda, s.g[q]);
     if (mixed) {
       const double g = dilatation_of(law, s.unknown[q]).value;
@@ -319,7 +314,7 @@ void add_viscosity(const CellLaw& law, const CellShape& shape, const Eigen::Matr
   if (!tangent) return;
 
   Eigen::MatrixXd B(6 * points, 3 * n), DB(6 * points, 3 * n), traces(points, 3 * n);
-  const Vector6 shear = law.mu * (Vector6() << 2, 2, 2, 1, 1, 1).finished();
+  const Voigt shear = law.mu * (Voigt() << 2, 2, 2, 1, 1, 1).finished();
   for (int q = 0; q < points; ++q) {
     const auto dN = shape.gradients.middleRows<3>(3 * q);
     const auto b = strain_matrix(F[q], dN);
@@ -334,27 +329,6 @@ void add_viscosity(const CellLaw& law, const CellShape& shape, const Eigen::Matr
     traces = (Eigen::VectorXd::Ones(points) * (shape.weights.transpose() * traces / shape.weights.sum())).eval();
   tangent->uu += viscosity * per_rate * lambda * (traces.transpose() * (weights * traces));
 }
-
-namespace {
-
-// F in the middle of a step, and the change of the deviatoric strain over it, at all quadrature points.
-struct ShearOfStep {
-  std::vector<Matrix3d> F, change;
-
-  ShearOfStep(const CellLaw& law, const CellShape& shape, const Eigen::MatrixXd& before,
-              const Eigen::MatrixXd& middle) {
-    const auto h = gradients_of(shape, middle), half = gradients_of(shape, middle - before);
-    for (int q = 0; q < shape.points(); ++q) {
-      F.push_back(Matrix3d::Identity());
-      if (law.law) F[q] += h.middleRows<3>(3 * q).transpose();
-      const Matrix3d product = F[q].transpose() * half.middleRows<3>(3 * q).transpose();
-      change.push_back(product + product.transpose());  // exact: strain is quadratic
-      change[q].diagonal().array() -= change[q].trace() / 3;
-    }
-  }
-};
-
-}  // namespace
 
 void add_relaxation(const CellLaw& law, const CellShape& shape, const Eigen::MatrixXd& before, const Eigen::MatrixXd& u,
                     const std::vector<RelaxingStep>& branches, const Overstrains& overstrains, CellVector& residual,
@@ -371,7 +345,7 @@ void add_relaxation(const CellLaw& law, const CellShape& shape, const Eigen::Mat
   add_forces(shape, stress, residual.u);
   if (!tangent) return;
 
-  Matrix6 D = (Vector6() << 1, 1, 1, 0.5, 0.5, 0.5).finished().asDiagonal();
+  Matrix6 D = (Voigt() << 1, 1, 1, 0.5, 0.5, 0.5).finished().asDiagonal();
   D.topLeftCorner<3, 3>().array() -= 1. / 3;
   double modulus = 0;  // strain changes twice as much over the step as to its middle
   for (const RelaxingStep& branch : branches) modulus += 4 * law.mu * branch.share * branch.over.psi;

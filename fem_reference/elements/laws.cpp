@@ -1,6 +1,7 @@
 #include "fem_reference/elements/laws.h"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,13 +10,6 @@
 
 namespace springproof::fem {
 namespace {
-
-Eigen::Matrix3d right_cauchy_green(const Matrix3& F) {
-  Eigen::Matrix3d C;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) C(i, j) = F[0][i] * F[0][j] + F[1][i] * F[1][j] + F[2][i] * F[2][j];
-  return C;
-}
 
 // Stress and its derivatives in the frame of the eigenvectors of C; c are the eigenvalues.
 struct Principal {
@@ -77,18 +71,14 @@ double divided_difference(const Principal& r, const Eigen::Vector3d& c, int a, i
   return (r.d(a, a) - r.d(a, b) + r.d(b, b) - r.d(b, a)) / 2;
 }
 
-using Vector6 = Eigen::Matrix<double, 6, 1>;
-
-Vector6 symmetric_product(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  Vector6 v;
+Voigt symmetric_product(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  Voigt v;
   v << a[0] * b[0], a[1] * b[1], a[2] * b[2], (a[0] * b[1] + a[1] * b[0]) / 2, (a[1] * b[2] + a[2] * b[1]) / 2,
       (a[0] * b[2] + a[2] * b[0]) / 2;
   return v;
 }
 
 bool is_linear_in_dilatation(Law law) { return law == Law::st_venant_kirchhoff || law == Law::neo_hooke_isochoric; }
-
-Voigt to_voigt(const Vector6& v) { return {v[0], v[1], v[2], v[3], v[4], v[5]}; }
 
 // N_a N_a of the eigenvectors N
 Eigen::Matrix<double, 6, 3> squares(const Eigen::Matrix3d& N) {
@@ -111,14 +101,8 @@ std::string law_names() {
   return all;
 }
 
-double determinant(const Matrix3& F) {
-  return F[0][0] * (F[1][1] * F[2][2] - F[1][2] * F[2][1]) - F[0][1] * (F[1][0] * F[2][2] - F[1][2] * F[2][0]) +
-         F[0][2] * (F[1][0] * F[2][1] - F[1][1] * F[2][0]);
-}
-
-double dilatation(Law law, const Matrix3& F) {
-  if (law == Law::st_venant_kirchhoff) return (right_cauchy_green(F).trace() - 3) / 2;
-  return determinant(F) - 1;
+double dilatation(Law law, const Eigen::Matrix3d& F) {
+  return law == Law::st_venant_kirchhoff ? (F.squaredNorm() - 3) / 2 : F.determinant() - 1;
 }
 
 ValueAndSlope pressure(Law law, double lambda, double g) {
@@ -145,9 +129,9 @@ ValueAndSlope dilatation_at_pressure(Law law, double lambda, double p) {
   return {g, 1 / pressure(law, lambda, g).slope};
 }
 
-double shear_energy(Law law, double mu, const Matrix3& F) {
-  const Eigen::Matrix3d C = right_cauchy_green(F);
-  const double J = determinant(F);
+double shear_energy(Law law, double mu, const Eigen::Matrix3d& F) {
+  const Eigen::Matrix3d C = F.transpose() * F;
+  const double J = F.determinant();
   switch (law) {
     case Law::hencky:
       return mu / 4 * Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(C).eigenvalues().array().log().square().sum();
@@ -169,8 +153,8 @@ double dilatation_energy(Law law, double lambda, double g) {
   return lambda / 2 * measure * measure;
 }
 
-LawResponse respond(Law law, double mu, double p, const Matrix3& F) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(right_cauchy_green(F));
+LawResponse respond(Law law, double mu, double p, const Eigen::Matrix3d& F) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(F.transpose() * F);
   const Eigen::Vector3d c = eigen.eigenvalues();
   const Eigen::Matrix3d& N = eigen.eigenvectors();
   const Principal r = principal(law, mu, p, c);
@@ -183,15 +167,12 @@ LawResponse respond(Law law, double mu, double p, const Matrix3& F) {
     pairs.col(a) = symmetric_product(N.col(a), N.col(b));
     of_pairs[a] = 2 * divided_difference(r, c, std::min(a, b), std::max(a, b));
   }
-  LawResponse response{to_voigt(M * r.s), to_voigt(M * r.q), to_voigt(M * r.g), {}};
-  using Rows = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
-  Eigen::Map<Rows>(response.D[0].data()) = M * r.d * M.transpose() + pairs * of_pairs.asDiagonal() * pairs.transpose();
-  return response;
+  return {M * r.s, M * r.q, M * r.g, M * r.d * M.transpose() + pairs * of_pairs.asDiagonal() * pairs.transpose()};
 }
 
 Voigt stress(Law law, double mu, double p, const Eigen::Matrix3d& C) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(C);
-  return to_voigt(squares(eigen.eigenvectors()) * principal(law, mu, p, eigen.eigenvalues()).s);
+  return squares(eigen.eigenvectors()) * principal(law, mu, p, eigen.eigenvalues()).s;
 }
 
 }  // namespace springproof::fem

@@ -7,7 +7,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <optional>
 #include <string>
 
@@ -30,24 +29,30 @@ std::optional<Law> law_named(const std::string& name);
 /// "hencky, log_cauchy, ..." for messages.
 std::string law_names();
 
-using Matrix3 = std::array<std::array<double, 3>, 3>;
-using Voigt = std::array<double, 6>;  ///< xx yy zz xy yz xz
+using Voigt = Eigen::Matrix<double, 6, 1>;  ///< xx yy zz xy yz xz
+
+/// The symmetric tensor of these components.
+inline Eigen::Matrix3d tensor(const Voigt& s) {
+  Eigen::Matrix3d t;
+  t << s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2];
+  return t;
+}
 
 struct LawResponse {
-  Voigt S;                 ///< second Piola-Kirchhoff stress [Pa]
-  Voigt Q;                 ///< dS / dp
-  Voigt G;                 ///< dg / dC, each shear pair counted once
-  std::array<Voigt, 6> D;  ///< dS / dC at fixed p [Pa], for increments (dCxx dCyy dCzz 2dCxy 2dCyz 2dCxz)
+  Voigt S;                        ///< second Piola-Kirchhoff stress [Pa]
+  Voigt Q;                        ///< dS / dp
+  Voigt G;                        ///< dg / dC, each shear pair counted once
+  Eigen::Matrix<double, 6, 6> D;  ///< dS / dC at fixed p [Pa], for increments (dCxx dCyy dCzz 2dCxy 2dCyz 2dCxz)
 };
 
 /// Response at deformation gradient F (det F > 0) and pressure p [Pa]; mu is the shear modulus [Pa].
-LawResponse respond(Law law, double mu, double p, const Matrix3& F);
+LawResponse respond(Law law, double mu, double p, const Eigen::Matrix3d& F);
 
 /// Its stress alone [Pa], at C = F^T F.
 Voigt stress(Law law, double mu, double p, const Eigen::Matrix3d& C);
 
 /// The dilatation g = J - 1, or tr E for St. Venant-Kirchhoff.
-double dilatation(Law law, const Matrix3& F);
+double dilatation(Law law, const Eigen::Matrix3d& F);
 
 struct ValueAndSlope {
   double value, slope;
@@ -61,11 +66,9 @@ ValueAndSlope pressure(Law law, double lambda, double g);
 ValueAndSlope dilatation_at_pressure(Law law, double lambda, double p);
 
 /// Energy per rest volume of S_shear [Pa], det F > 0.  Not of log_cauchy, which has none: NaN.
-double shear_energy(Law law, double mu, const Matrix3& F);
+double shear_energy(Law law, double mu, const Eigen::Matrix3d& F);
 
 /// That of the pressure, whose derivative is p(g) [Pa].  Not of log_cauchy: NaN.
 double dilatation_energy(Law law, double lambda, double g);
-
-double determinant(const Matrix3& F);
 
 }  // namespace springproof::fem

@@ -8,8 +8,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "fem_reference/exchange/case_request.h"
 #include "fem_reference/exchange/exchange.h"
-#include "fem_reference/exchange/grid_meshes.h"
 #include "fem_reference/exchange/plain_words.h"
 #include "problem/processes/child.h"
 #include "problem/processes/fork_server.h"

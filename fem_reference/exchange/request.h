@@ -49,27 +49,31 @@ struct MotionRequest {
   bool energy_momentum = false;  ///< steps do the work of the law's stress exactly; false: the midpoint rule
 };
 
-struct Request {
-  std::string name;                     ///< of the case, in messages
-  std::filesystem::path geo;            ///< gmsh script of the body, for grids without a given mesh
-  Vec3 size = Vec3::Zero();             ///< its parameters [m]
-  std::vector<PatchRule> patches = {};  ///< added to it by mesh_grids(), which the program is not told of
-  std::string law = "linear";           ///< or a law of finite strain (fem_reference/elements/laws.h)
+/// What is the same on every grid.
+struct CommonProblem {
+  std::string law = "linear";  ///< or a law of finite strain (fem_reference/elements/laws.h)
   IsotropicMaterial material;
-  std::vector<MaterialRegion> regions = {};  ///< of Mesh::materials from 1 on; the program is told of their materials
   std::vector<Load> loads;
-  std::vector<Discretisation> grids;
   NodalVectors points;  ///< rest positions at which the displacement is requested, n x 3 [m]; for a given mesh also
                         ///< outside, where it is extrapolated from the nearest cell
-  NodalVectors stress_points = NodalVectors(0, 3);       ///< rest positions at which the stress is requested, m x 3 [m]
-  double tolerance = 1e-9;                               ///< relative residual of the linear solves
-  std::vector<std::shared_ptr<const Mesh>> meshes = {};  ///< bodies as given, instead of the .geo
-  bool cost = false;                                     ///< measure times and memory for comparison (RunTimes)
-  bool vtu_single = false;                               ///< Discretisation::vtu in single precision
+  NodalVectors stress_points = NodalVectors(0, 3);  ///< rest positions at which the stress is requested, m x 3 [m]
+  double tolerance = 1e-9;                          ///< relative residual of the linear solves
   int modes = 0;  ///< compute so many natural modes instead of a displacement: supports at rest, no other loads
   std::optional<MotionRequest> motion = {};  ///< integrate in time instead of an equilibrium
   std::vector<AttachedMass> masses =
       {};  ///< that modes and motions have beside the body's own; their weight is in `loads`
+};
+
+struct Request : CommonProblem {
+  std::string name;                          ///< of the case, in messages
+  std::filesystem::path geo;                 ///< gmsh script of the body, for grids without a given mesh
+  Vec3 size = Vec3::Zero();                  ///< its parameters [m]
+  std::vector<PatchRule> patches = {};       ///< added to it by mesh_grids(), which the program is not told of
+  std::vector<MaterialRegion> regions = {};  ///< of Mesh::materials from 1 on; the program is told of their materials
+  std::vector<Discretisation> grids;
+  std::vector<std::shared_ptr<const Mesh>> meshes = {};  ///< bodies as given, instead of the .geo
+  bool cost = false;                                     ///< measure times and memory for comparison (RunTimes)
+  bool vtu_single = false;                               ///< Discretisation::vtu in single precision
 };
 
 /// Means over a region, and its energy.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <set>
 
 #include "fem_reference/grid/processes.h"
@@ -14,9 +15,24 @@
 namespace springproof::fem {
 namespace {
 
-double distance_outside_unit_cell(const dealii::Point<3>& unit, bool tetrahedron) {
-  if (tetrahedron) return std::max({0.0, -unit[0], -unit[1], -unit[2], unit[0] + unit[1] + unit[2] - 1});
-  return unit.distance(dealii::GeometryInfo<3>::project_to_unit_cell(unit));
+/// A point in the coordinates of a cell, and how far outside of it in these.
+struct InCell {
+  Location place;
+  double outside;
+};
+
+/// Nothing where the cell's mapping has no inverse.
+template <class Cell>
+std::optional<InCell> in_cell(const dealii::GridTools::Cache<3>& cache, const Cell& cell, const dealii::Point<3>& X) {
+  try {
+    const dealii::Point<3> unit = cache.get_mapping().transform_real_to_unit_cell(cell, X);
+    const double outside = cell->reference_cell().is_simplex()
+                               ? std::max({0.0, -unit[0], -unit[1], -unit[2], unit[0] + unit[1] + unit[2] - 1})
+                               : unit.distance(dealii::GeometryInfo<3>::project_to_unit_cell(unit));
+    return InCell{{cell, unit}, outside};
+  } catch (const dealii::Mapping<3>::ExcTransformationFailed&) {
+    return {};
+  }
 }
 
 // Points further outside are refused, as a fraction of the adjacent cell (hexahedra) or of the body's extent
@@ -28,40 +44,17 @@ constexpr double furthest_outside_cell = 0.5, furthest_outside = 0.2;
 }
 
 // For a point just outside the facetted body: among the cells at the nearest vertex, the one it is least outside of.
-Location locate_near(const dealii::Triangulation<3>& triangulation, const dealii::GridTools::Cache<3>& cache,
-                     const dealii::Point<3>& X) {
-  const auto& mapping = cache.get_mapping();
-  const unsigned int vertex = dealii::GridTools::find_closest_vertex(mapping, triangulation, X);
-  Location best;
-  double least = furthest_outside_cell;
-  bool found = false;
+std::optional<InCell> locate_near(const dealii::Triangulation<3>& triangulation,
+                                  const dealii::GridTools::Cache<3>& cache, const dealii::Point<3>& X) {
+  const unsigned int vertex = dealii::GridTools::find_closest_vertex(cache.get_mapping(), triangulation, X);
+  std::optional<InCell> best;
   for (const auto& cell : cache.get_vertex_to_cell_map()[vertex]) {
     if (cell->is_artificial()) continue;
-    try {
-      const dealii::Point<3> unit = mapping.transform_real_to_unit_cell(cell, X);
-      const double outside = distance_outside_unit_cell(unit, cell->reference_cell().is_simplex());
-      if (outside > least) continue;
-      least = outside;
-      best = {cell, unit};
-      found = true;
-    } catch (const dealii::Mapping<3>::ExcTransformationFailed&) {
-    }
+    const auto at = in_cell(cache, cell, X);
+    if (at && at->outside <= (best ? best->outside : furthest_outside_cell)) best = at;
   }
-  if (!found) throw_outside(X);
   return best;
 }
-
-}  // namespace
-
-std::vector<dealii::types::global_dof_index> dofs_at(const Location& place, const dealii::DoFHandler<3>& dof_handler) {
-  const dealii::DoFHandler<3>::active_cell_iterator cell(&dof_handler.get_triangulation(), place.cell->level(),
-                                                         place.cell->index(), &dof_handler);
-  std::vector<dealii::types::global_dof_index> dofs(dof_handler.get_fe().n_dofs_per_cell());
-  cell->get_dof_indices(dofs);
-  return dofs;
-}
-
-namespace {
 
 constexpr double within = 1e-6;  // of a cell's size: a point this far outside counts as inside
 
@@ -71,11 +64,7 @@ std::vector<Location> owned_cells_at(const dealii::GridTools::Cache<3>& cache, c
   const auto& boxes = cache.get_locally_owned_cell_bounding_boxes_rtree();
   for (const auto& [box, cell] : boxes) {
     if (!box.point_inside(X, 0.1)) continue;  // a curved cell may extend beyond the bounding box of its nodes
-    try {
-      const dealii::Point<3> unit = cache.get_mapping().transform_real_to_unit_cell(cell, X);
-      if (distance_outside_unit_cell(unit, cell->reference_cell().is_simplex()) < within) all.push_back({cell, unit});
-    } catch (const dealii::Mapping<3>::ExcTransformationFailed&) {
-    }
+    if (const auto at = in_cell(cache, cell, X); at && at->outside < within) all.push_back(at->place);
   }
   return all;
 }
@@ -85,14 +74,9 @@ std::pair<Location, double> own_location(const Body3& body, const dealii::GridTo
                                          const dealii::Point<3>& X) {
   const std::vector<Location> inside = owned_cells_at(cache, X);
   if (!inside.empty()) return {inside.front(), 0};
-  const std::pair<Location, double> none = {{}, std::numeric_limits<double>::infinity()};
-  try {
-    const Location near = locate_near(body.triangulation, cache, X);
-    if (!near.cell->is_locally_owned()) return none;
-    return {near, std::max(within, distance_outside_unit_cell(near.unit, near.cell->reference_cell().is_simplex()))};
-  } catch (const InputError&) {
-    return none;
-  }
+  const auto near = locate_near(body.triangulation, cache, X);
+  if (!near || !near->place.cell->is_locally_owned()) return {{}, std::numeric_limits<double>::infinity()};
+  return {near->place, std::max(within, near->outside)};
 }
 
 std::vector<Location> locate_among_processes(const Body3& body, const dealii::GridTools::Cache<3>& cache,
@@ -184,7 +168,11 @@ std::vector<Location> locate(const Body3& body, const NodalVectors& points) {
   const auto [cells, units, indices, missing] = dealii::GridTools::compute_point_locations_try_all(cache, X);
   for (std::size_t c = 0; c < cells.size(); ++c)
     for (std::size_t k = 0; k < indices[c].size(); ++k) places[indices[c][k]] = {cells[c], units[c][k]};
-  for (const unsigned int i : missing) places[i] = locate_near(body.triangulation, cache, X[i]);
+  for (const unsigned int i : missing) {
+    const auto near = locate_near(body.triangulation, cache, X[i]);
+    if (!near) throw_outside(X[i]);
+    places[i] = near->place;
+  }
   return places;
 }
 
@@ -195,12 +183,7 @@ std::vector<Location> cells_around(const dealii::GridTools::Cache<3>& cache, con
   std::vector<Location> all = {first};
   for (const auto& cell : neighbours) {
     if (cell == first.cell || !cell->is_locally_owned()) continue;
-    try {
-      const dealii::Point<3> unit =
-          cache.get_mapping().transform_real_to_unit_cell(cell, dealii::Point<3>(X[0], X[1], X[2]));
-      if (distance_outside_unit_cell(unit, cell->reference_cell().is_simplex()) < within) all.push_back({cell, unit});
-    } catch (const dealii::Mapping<3>::ExcTransformationFailed&) {
-    }
+    if (const auto at = in_cell(cache, cell, {X[0], X[1], X[2]}); at && at->outside < within) all.push_back(at->place);
   }
   return all;
 }

@@ -1,7 +1,6 @@
 // The cells that contain a point.
 #pragma once
 
-#include <deal.II/dofs/dof_handler.h>
 #include <deal.II/grid/grid_tools_cache.h>
 
 #include <vector>
@@ -19,9 +18,6 @@ struct Location {
 
   bool is_here() const { return cell.state() == dealii::IteratorState::valid; }
 };
-
-/// The degrees of freedom of the cell of a location.
-std::vector<dealii::types::global_dof_index> dofs_at(const Location& place, const dealii::DoFHandler<3>& dof_handler);
 
 /// @throws InputError naming the first point that is further outside the body than half the adjacent cell (tetrahedra:
 /// 0.2 of the body's extent).

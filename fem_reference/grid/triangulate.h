@@ -3,6 +3,7 @@
 #pragma once
 
 #include <deal.II/base/quadrature.h>
+#include <deal.II/dofs/dof_handler.h>
 #include <deal.II/fe/fe_system.h>
 #include <deal.II/fe/mapping.h>
 #include <deal.II/grid/tria.h>
@@ -12,6 +13,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "meshes/mesh.h"
 
@@ -50,6 +52,15 @@ std::unique_ptr<dealii::FESystem<3>> displacement_element(const Body3& body, int
 
 /// The pressures of the mixed form beside displacements of this degree (element.h).
 std::unique_ptr<dealii::FiniteElement<3>> pressure_element(const Body3& body, int degree);
+
+/// The handler's degrees of freedom in a cell, of its own or of another triangulation of the same cells.
+template <class Cell>
+std::vector<dealii::types::global_dof_index> dofs_in(const Cell& cell, const dealii::DoFHandler<3>& handler) {
+  std::vector<dealii::types::global_dof_index> dofs(handler.get_fe().n_dofs_per_cell());
+  dealii::DoFHandler<3>::active_cell_iterator(&handler.get_triangulation(), cell->level(), cell->index(), &handler)
+      ->get_dof_indices(dofs);
+  return dofs;
+}
 
 /// Shape functions at the points of a rule, one row per point.
 Eigen::MatrixXd values_at(const dealii::FiniteElement<3>& fe, const dealii::Quadrature<3>& quadrature);

@@ -22,7 +22,7 @@ AssembledOperator::AssembledOperator(const ElasticSystem& system, std::optional<
   }
   if (law_ || spaces_->mixed()) {
     matrices_ = std::make_unique<Matrices>(*spaces_);
-    MixedVector f = vector();
+    MixedField f = vector();
     linearise(f, state_);
   }
 }
@@ -35,15 +35,14 @@ void AssembledOperator::assemble_stiffness(const DofVector* deformed_by) {
   spaces_->assemble_stiffness(deformed_by, *smoothed_);
   const dealii::Mapping<3>& mapping = *system_.body.mapping;
   if (!coarse_) {
-    multigrid_ = std::make_unique<Multigrid>(*smoothed_, mapping, spaces_->u, most_factored_);
+    multigrid_ = std::make_unique<Multigrid>(*smoothed_, nullptr, mapping, spaces_->u, most_factored_);
     return;
   }
   DofVector at_corners;
   if (deformed_by) at_corners = coarse_->restricted(*spaces_, *deformed_by);
   coarse_->spaces.assemble_stiffness(deformed_by ? &at_corners : nullptr, *coarse_->matrix);
-  multigrid_ = std::make_unique<Multigrid>(
-      *smoothed_, mapping, LinearLevel{*coarse_->matrix, *coarse_->interpolation, *coarse_->dof_handler},
-      most_factored_);
+  const LinearLevel linear{*coarse_->matrix, *coarse_->interpolation};
+  multigrid_ = std::make_unique<Multigrid>(*smoothed_, &linear, mapping, *coarse_->dof_handler, most_factored_);
 }
 
 namespace {
@@ -73,9 +72,9 @@ void AssembledOperator::assemble_mass() {
   for (double& m : inverse_mass_) m = 1 / m;
 }
 
-MixedVector AssembledOperator::vector() const { return spaces_->vector(); }
+MixedField AssembledOperator::vector() const { return spaces_->vector(); }
 
-double AssembledOperator::linearise(MixedVector& f, const MixedVector& x) {
+double AssembledOperator::linearise(MixedField& f, const MixedField& x) {
   state_ = x;
   state_.u.update_ghost_values();
   if (spaces_->mixed()) state_.p.update_ghost_values();
@@ -100,8 +99,8 @@ double AssembledOperator::linearise(MixedVector& f, const MixedVector& x) {
 }
 
 // Cells on which x is zero are skipped: Newton applies this to boundary values, the linear solver to all unknowns.
-void AssembledOperator::apply(MixedVector& f, const MixedVector& x) const {
-  MixedVector from = x;
+void AssembledOperator::apply(MixedField& f, const MixedField& x) const {
+  MixedField from = x;
   from.u.update_ghost_values();
   if (spaces_->mixed()) from.p.update_ghost_values();
   f.sadd(0, 0, f);
@@ -127,7 +126,7 @@ void AssembledOperator::apply(MixedVector& f, const MixedVector& x) const {
   if (spaces_->mixed()) f.p.compress(dealii::VectorOperation::add);
 }
 
-void AssembledOperator::vmult(MixedVector& y, const MixedVector& x) const {
+void AssembledOperator::vmult(MixedField& y, const MixedField& x) const {
   // Constrained rows and columns of every matrix are zero except for the diagonal.
   (law_ ? matrices_->uu : smoothed_)->multiply(y.u, x.u);
   if (spaces_->mixed()) {
@@ -164,7 +163,7 @@ void AssembledOperator::precondition_pressure(DofVector& y, const DofVector& x) 
   y *= 1 / compliance(system_.law_of(0, law_));
 }
 
-void AssembledOperator::prepare(const MixedVector& x) {
+void AssembledOperator::prepare(const MixedField& x) {
   const int cycles = std::exchange(cycles_, 0);
   if (cycles_when_new_ == 0) cycles_when_new_ = cycles;
   if (cycles <= 2 * cycles_when_new_ + 10) return;
@@ -172,7 +171,7 @@ void AssembledOperator::prepare(const MixedVector& x) {
   cycles_when_new_ = 0;
 }
 
-bool AssembledOperator::factorise(const MixedVector& x) {
+bool AssembledOperator::factorise(const MixedField& x) {
   if (!coarse_ || system_.dof_handler.n_dofs() > most_factored_for_thin_bodies) return false;
   coarse_.reset();
   most_factored_ = most_factored_for_thin_bodies;
@@ -183,19 +182,18 @@ bool AssembledOperator::factorise(const MixedVector& x) {
 
 void AssembledOperator::clear_constrained(DofVector& f) const {
   for (const unsigned int i : system_.constrained)
-    if (spaces_->u_dofs.owned.is_element(i)) f(i) = 0;
+    if (f.in_local_range(i)) f(i) = 0;
 }
 
-CellPressures AssembledOperator::pressures(const MixedVector& x) const {
-  MixedVector from = x;
+CellPressures AssembledOperator::pressures(const MixedField& x) const {
+  MixedField from = x;
   from.p.update_ghost_values();
   const dealii::FiniteElement<3>& fe = spaces_->p.get_fe();
   const std::vector<dealii::Point<3>> corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   CellPressures all(system_.body.triangulation.n_active_cells());
-  std::vector<dealii::types::global_dof_index> dofs(fe.n_dofs_per_cell());
   for (const auto& cell : spaces_->p.active_cell_iterators()) {
     if (!cell->is_locally_owned()) continue;
-    cell->get_dof_indices(dofs);
+    const auto dofs = dofs_in(cell, spaces_->p);
     std::array<double, 4>& c = all[cell->active_cell_index()];
     for (int k = 0; k < 4; ++k) {
       for (unsigned int f = 0; f < dofs.size(); ++f) c[k] += from.p(dofs[f]) * fe.shape_value(f, corners[k]);
@@ -205,7 +203,9 @@ CellPressures AssembledOperator::pressures(const MixedVector& x) const {
   return all;
 }
 
-ElasticAnswer solve(const ElasticSystem& system, const DofVector& load, DofVector& displacement) {
+namespace {
+
+ElasticAnswer solve_elastic(const ElasticSystem& system, const DofVector& load, DofVector& displacement) {
   start_mpi();
   AssembledOperator K(system, std::nullopt);
   ElasticAnswer answer = solve_linear(K, system, load, displacement);
@@ -213,13 +213,17 @@ ElasticAnswer solve(const ElasticSystem& system, const DofVector& load, DofVecto
   return answer;
 }
 
-FiniteAnswer solve(const ElasticSystem& system, const FiniteProblem& problem, const DofVector& load,
-                   DofVector& displacement) {
+FiniteAnswer solve_finite(const ElasticSystem& system, const FiniteProblem& problem, const DofVector& load,
+                          DofVector& displacement) {
   start_mpi();
   AssembledOperator K(system, problem.law);
   FiniteAnswer answer = Newton<AssembledOperator>(K, system, problem, load).solve(displacement);
   answer.method = "Newton, GMRES, " + K.preconditioner();
   return answer;
 }
+
+}  // namespace
+
+extern const Solvers solvers = {solve_elastic, solve_finite};
 
 }  // namespace springproof::fem::assembled

@@ -8,7 +8,7 @@
 #ifndef SPRINGPROOF_SOLVER_NAMESPACE
 #define SPRINGPROOF_SOLVER_NAMESPACE assembled
 #endif
-#include "fem_reference/solvers/mixed_vector.h"
+#include "fem_reference/solvers/mixed_field.h"
 #include "fem_reference/solvers/multigrid.h"
 #include "fem_reference/system/elastic_system.h"
 
@@ -21,22 +21,22 @@ class AssembledOperator {
   AssembledOperator(const ElasticSystem& system, std::optional<Law> law);
   ~AssembledOperator();
 
-  MixedVector vector() const;
-  void apply(MixedVector& f, const MixedVector& x) const;
-  void vmult(MixedVector& y, const MixedVector& x) const;
+  MixedField vector() const;
+  void apply(MixedField& f, const MixedField& x) const;
+  void vmult(MixedField& y, const MixedField& x) const;
   void couple(DofVector& f, const DofVector& p) const;
   void precondition_displacement(DofVector& z, const DofVector& r) const;
   void precondition_pressure(DofVector& y, const DofVector& x) const;
   void clear_constrained(DofVector& f) const;
-  CellPressures pressures(const MixedVector& x) const;
+  CellPressures pressures(const MixedField& x) const;
 
-  double linearise(MixedVector& f, const MixedVector& x);
+  double linearise(MixedField& f, const MixedField& x);
   /// Rebuilds the multigrid for the deformed body, if the current one has become slow.
-  void prepare(const MixedVector& x);
+  void prepare(const MixedField& x);
   /// Factors of the stiffness of the body deformed by x (under small strain, of the undeformed one) in place of the
   /// multigrid. Linear elements lock in thin bodies and are of no use below quadratic ones there.
   /// @return false if that is so already, or if it has more rows than `most_factored_for_thin_bodies`
-  bool factorise(const MixedVector& x);
+  bool factorise(const MixedField& x);
 
   const std::string& preconditioner() const { return multigrid_->name(); }  ///< of the displacements, for the report
 
@@ -51,7 +51,7 @@ class AssembledOperator {
   std::optional<Law> law_;
   std::unique_ptr<Spaces> spaces_;
   std::unique_ptr<Matrices> matrices_;
-  MixedVector state_;                       ///< state of the last linearise()
+  MixedField state_;                        ///< state of the last linearise()
   std::unique_ptr<SparseMatrix> smoothed_;  ///< fine-level matrix of the multigrid
   std::unique_ptr<CoarseSpaces> coarse_;    ///< for quadratic elements: the linear ones
   int most_factored_;                       ///< rows, of the level that is factored

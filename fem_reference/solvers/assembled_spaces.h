@@ -16,34 +16,20 @@
 
 namespace springproof::fem::assembled {
 
-/// Degrees of freedom of this process, and those of its cells.
-struct DofSets {
-  explicit DofSets(const dealii::DoFHandler<3>& dof_handler) : owned(dof_handler.locally_owned_dofs()) {
-    dealii::DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
-  }
-  dealii::IndexSet owned, relevant;
-};
-
-inline DofVector zero(const DofSets& dofs, MPI_Comm comm) { return DofVector(dofs.owned, dofs.relevant, comm); }
-
 /// With the entries that the cells couple, all zero.
 inline std::unique_ptr<SparseMatrix> empty_matrix(const dealii::DoFHandler<3>& rows,
                                                   const dealii::DoFHandler<3>& columns, MPI_Comm comm) {
-  const DofSets row_dofs(rows), column_dofs(columns);
-  dealii::DynamicSparsityPattern pattern(rows.n_dofs(), columns.n_dofs(), row_dofs.relevant);
-  std::vector<dealii::types::global_dof_index> r(rows.get_fe().n_dofs_per_cell()),
-      c(columns.get_fe().n_dofs_per_cell());
+  dealii::IndexSet relevant;
+  dealii::DoFTools::extract_locally_relevant_dofs(rows, relevant);
+  dealii::DynamicSparsityPattern pattern(rows.n_dofs(), columns.n_dofs(), relevant);
   for (const auto& cell : rows.active_cell_iterators()) {
     if (cell->is_artificial()) continue;
-    const dealii::DoFHandler<3>::active_cell_iterator other(&columns.get_triangulation(), cell->level(), cell->index(),
-                                                            &columns);
-    cell->get_dof_indices(r);
-    other->get_dof_indices(c);
+    auto c = dofs_in(cell, columns);
     std::sort(c.begin(), c.end());
-    for (const auto row : r)
-      if (row_dofs.owned.is_element(row)) pattern.add_entries(row, c.begin(), c.end(), true);
+    for (const auto row : dofs_in(cell, rows))
+      if (rows.locally_owned_dofs().is_element(row)) pattern.add_entries(row, c.begin(), c.end(), true);
   }
-  return std::make_unique<SparseMatrix>(row_dofs.owned, column_dofs.owned, pattern, comm);
+  return std::make_unique<SparseMatrix>(rows.locally_owned_dofs(), columns.locally_owned_dofs(), pattern, comm);
 }
 
 /// Degrees of freedom, quadrature and constraints, which do not depend on the state.
@@ -58,7 +44,6 @@ struct AssembledOperator::Spaces {
         scalar(scalar_element(system.body, int(u.get_fe().degree))),
         quadrature(cell_quadrature(system.body, u.get_fe().degree + 1)),
         values(*system.body.mapping, *scalar, quadrature, dealii::update_gradients | dealii::update_JxW_values),
-        u_dofs(u),
         u_indices(u.get_fe().n_dofs_per_cell()),
         held(u.n_dofs()) {
     held.add_indices(constrained.begin(), constrained.end());
@@ -70,27 +55,20 @@ struct AssembledOperator::Spaces {
     if (system.form != Form::mixed || &u != &system.dof_handler) return;
     const auto fe = pressure_element(system.body, system.degree);
     p.distribute_dofs(*fe);
-    p_dofs.emplace(p);
     p_indices.resize(fe->n_dofs_per_cell());
     shape.pressures = values_at(*fe, quadrature);
   }
 
-  bool mixed() const { return p_dofs.has_value(); }
+  bool mixed() const { return !p_indices.empty(); }
 
   // Calls visit() on every locally owned cell, with law, shape, u_indices and p_indices set.
   template <typename Visit>
   void for_each_cell(const Visit& visit) {
-    std::vector<dealii::types::global_dof_index> dofs(u_indices.size()), pressure_dofs(p_indices.size());
     for (const auto& cell : u.active_cell_iterators()) {
       if (!cell->is_locally_owned()) continue;
-      cell->get_dof_indices(dofs);
+      const auto dofs = dofs_in(cell, u);
       for (std::size_t i = 0; i < dofs.size(); ++i) u_indices[place[i]] = PetscInt(dofs[i]);
-      if (mixed()) {
-        const dealii::DoFHandler<3>::active_cell_iterator same(&p.get_triangulation(), cell->level(), cell->index(),
-                                                               &p);
-        same->get_dof_indices(pressure_dofs);
-        std::copy(pressure_dofs.begin(), pressure_dofs.end(), p_indices.begin());
-      }
+      if (mixed()) std::ranges::copy(dofs_in(cell, p), p_indices.begin());
       const dealii::Triangulation<3>::cell_iterator here = cell;
       law = system_.law_of(cell->material_id(), law.law);
       values.reinit(here);
@@ -105,25 +83,25 @@ struct AssembledOperator::Spaces {
     return at_nodes;
   }
 
-  CellVector read(const MixedVector& x) const {
+  CellVector read(const MixedField& x) const {
     CellVector c{displacement(x.u), Eigen::VectorXd(p_indices.size())};
     for (std::size_t f = 0; f < p_indices.size(); ++f) c.p[f] = x.p(p_indices[f]);
     return c;
   }
 
-  void add(const CellVector& c, MixedVector& f) const {
+  void add(const CellVector& c, MixedField& f) const {
     for (std::size_t i = 0; i < u_indices.size(); ++i) f.u(u_indices[i]) += c.u(i / 3, i % 3);
     for (std::size_t k = 0; k < p_indices.size(); ++k) f.p(p_indices[k]) += c.p[k];
   }
 
-  MixedVector vector() const { return {zero(u_dofs, comm), mixed() ? zero(*p_dofs, comm) : DofVector()}; }
+  MixedField vector() const { return {zero_vector(u), mixed() ? zero_vector(p) : DofVector()}; }
 
   // Stiffness of the undeformed body (nullptr), or of the deformed one.
   void assemble_stiffness(const DofVector* deformed_by, SparseMatrix& matrix) {
     matrix.clear();
     DofVector x;
     if (deformed_by) {
-      x = zero(u_dofs, comm);
+      x = zero_vector(u);
       x = *deformed_by;
       x.update_ghost_values();
     }
@@ -161,8 +139,6 @@ struct AssembledOperator::Spaces {
   std::unique_ptr<dealii::FiniteElement<3>> scalar;
   dealii::Quadrature<3> quadrature;
   dealii::FEValues<3> values;
-  DofSets u_dofs;
-  std::optional<DofSets> p_dofs;
   std::vector<PetscInt> u_indices, p_indices;  // of the cell being visited; 3 a + i for component i of node a
   std::vector<int> place;                      // deal.II's local number -> 3 a + i
   dealii::IndexSet held;                       // degrees of freedom with prescribed value
@@ -179,7 +155,7 @@ struct AssembledOperator::CoarseSpaces {
       const auto &fe = fine.u.get_fe(), &linear = dof_handler->get_fe();
       const std::vector<PetscInt> columns(coarse_dofs.begin(), coarse_dofs.end());
       for (unsigned int i = 0; i < fine_dofs.size(); ++i) {
-        if (!fine.u_dofs.owned.is_element(fine_dofs[i])) continue;
+        if (!fine.u.locally_owned_dofs().is_element(fine_dofs[i])) continue;
         std::vector<double> row(columns.size(), 0.0);
         if (!fine.held.is_element(fine_dofs[i]))
           for (unsigned int j = 0; j < columns.size(); ++j)
@@ -201,16 +177,8 @@ struct AssembledOperator::CoarseSpaces {
   // Calls visit() on every locally owned cell, with the degrees of freedom of both elements.
   template <typename Visit>
   void for_each_pair(const Spaces& fine, const Visit& visit) const {
-    std::vector<dealii::types::global_dof_index> f(fine.u.get_fe().n_dofs_per_cell()),
-        c(dof_handler->get_fe().n_dofs_per_cell());
-    for (const auto& cell : fine.u.active_cell_iterators()) {
-      if (!cell->is_locally_owned()) continue;
-      const dealii::DoFHandler<3>::active_cell_iterator same(&dof_handler->get_triangulation(), cell->level(),
-                                                             cell->index(), dof_handler.get());
-      cell->get_dof_indices(f);
-      same->get_dof_indices(c);
-      visit(f, c);
-    }
+    for (const auto& cell : fine.u.active_cell_iterators())
+      if (cell->is_locally_owned()) visit(dofs_in(cell, fine.u), dofs_in(cell, *dof_handler));
   }
 
   // The vertex degrees of freedom of a cell come first in both elements.
@@ -225,12 +193,12 @@ struct AssembledOperator::CoarseSpaces {
 
   // Restriction by injection: the values at the vertices.
   DofVector restricted(const Spaces& fine, const DofVector& x) const {
-    DofVector from = zero(fine.u_dofs, fine.comm), to = zero(spaces.u_dofs, fine.comm);
+    DofVector from = zero_vector(fine.u), to = zero_vector(spaces.u);
     from = x;
     from.update_ghost_values();
     for_each_pair(fine, [&](const auto& fine_dofs, const auto& coarse_dofs) {
       for (std::size_t i = 0; i < coarse_dofs.size(); ++i)
-        if (spaces.u_dofs.owned.is_element(coarse_dofs[i])) to(coarse_dofs[i]) = from(fine_dofs[i]);
+        if (spaces.u.locally_owned_dofs().is_element(coarse_dofs[i])) to(coarse_dofs[i]) = from(fine_dofs[i]);
     });
     return to;
   }

@@ -1,7 +1,7 @@
-// Norm and preconditioner of systems that may have pressures as unknowns.  Part of each solver, like mixed_vector.h.
+// Norm and preconditioner of systems that may have pressures as unknowns.  Part of each solver, like mixed_field.h.
 #pragma once
 
-#include "fem_reference/solvers/mixed_vector.h"
+#include "fem_reference/solvers/mixed_field.h"
 #include "fem_reference/system/elastic_system.h"
 
 namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE {
@@ -22,7 +22,7 @@ class ResidualProduct {
     const double h = dealii::Utilities::MPI::sum(diameters, comm) / dealii::Utilities::MPI::sum(cells, comm);
     weight_ = std::pow(2 * system.mu / h, 2);
   }
-  double operator()(const MixedVector& a, const MixedVector& b) const { return a.u * b.u + weight_ * (a.p * b.p); }
+  double operator()(const MixedField& a, const MixedField& b) const { return a.u * b.u + weight_ * (a.p * b.p); }
 
  private:
   double weight_ = 0;
@@ -59,7 +59,7 @@ class BlockTriangular {
   BlockTriangular(const Operator& K, const ElasticSystem& system)
       : K_(K), mixed_(system.form == Form::mixed), rest_(K.vector().u) {}
 
-  void operator()(MixedVector& z, const MixedVector& r) const {
+  void operator()(MixedField& z, const MixedField& r) const {
     if (!mixed_) return K_.precondition_displacement(z.u, r.u);
     K_.precondition_pressure(z.p, r.p);
     z.p *= -1;

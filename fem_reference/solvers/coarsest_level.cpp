@@ -25,20 +25,8 @@ class LinearElements {
     interpolate_to(fine);
     // The operator of the multigrid: for the mixed form the shear part alone.
     const bool mixed = fine.form == Form::mixed;
-    system_.emplace(ElasticSystem{body_,
-                                  handler_,
-                                  held_,
-                                  {},
-                                  1,
-                                  mixed ? Form::pointwise : fine.form,
-                                  fine.mu,
-                                  mixed ? 0 : fine.lambda,
-                                  fine.tolerance,
-                                  false,
-                                  false,
-                                  most_factored_rows,
-                                  {},
-                                  {}});
+    system_.emplace(ElasticSystem{body_, handler_, 1, mixed ? Form::pointwise : fine.form, fine.mu,
+                                  mixed ? 0 : fine.lambda, held_});
     operator_.emplace(*system_, std::nullopt);
     r_ = z_ = operator_->vector().u;
   }

@@ -11,87 +11,46 @@ namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE {
 // Internal force from P = F S, S = S_shear + p Q.  The pressure p follows from the dilatation g at the quadrature point
 // or from its mean over the cell, or is an unknown; then the residual also contains the integrals of (g - g(p)) q.
 template <int degree>
-class FiniteOperator {
- public:
-  using Base = Stiffness<degree, double>;
-  using Cell = typename Base::Cell;
-  using Lane = Lanes<double>;
+class FiniteOperator : public OperatorWithPressures<degree, FiniteOperator<degree>> {
+  using Shared = OperatorWithPressures<degree, FiniteOperator<degree>>;
+  using Shared::base_, Shared::pressure_, Shared::mixed, Shared::form_, Shared::lambda_;
+  using typename Shared::Cell, typename Shared::Lane, typename Shared::Pressures;
   using Tensor = dealii::Tensor<2, 3, Lane>;
   using Six = std::array<Lane, 6>;
   static constexpr unsigned int points = Cell::static_n_q_points;
 
-  FiniteOperator(const Base& base, Law law, Form form, double lambda)
-      : base_(base),
-        pressure_(base.cells()),
+ public:
+  FiniteOperator(const ElasticSystem& system, Law law)
+      : Shared(system, {system.mu, 0, false}),
         law_(law),
-        form_(form),
-        mu_(base.coefficients().mu),
-        lambda_(lambda),
-        table_(base.cells().n_cell_batches() * points * entries * Lane::size()) {}
+        mu_(system.mu),
+        table_(base_.cells().n_cell_batches() * points * entries * Lane::size()) {}
 
-  MixedVector vector() const {
-    MixedVector x;
-    x.u = base_.vector();
-    if (form_ == Form::mixed) x.p.reinit(pressure_.inverse_mass);
-    return x;
-  }
+  void prepare(const MixedField& x) { this->multigrid_.deform(x.u); }
 
   /// Residual at x, on all degrees of freedom, and the tangent that vmult uses from then on.  Returns the
   /// smallest det F at quadrature points; f and the tangent are valid only if it is positive.
-  double linearise(MixedVector& f, const MixedVector& x) {
+  double linearise(MixedField& f, const MixedField& x) {
     double smallest = std::numeric_limits<double>::infinity();
-    loop(f, x, [&](Cell& u, unsigned int batch, const Coefficients& p) { return evaluate(u, batch, p, smallest); });
+    this->loop(f, x, [&](Cell& u, unsigned int batch, const Pressures& p) { return evaluate(u, batch, p, smallest); });
     return dealii::Utilities::MPI::min(smallest, base_.cells().get_dof_handler().get_communicator());
   }
 
   /// Tangent times x, on all degrees of freedom.
-  void apply(MixedVector& y, const MixedVector& x) const {
-    loop(y, x, [&](Cell& u, unsigned int batch, const Coefficients& p) { return tangent(u, batch, p); });
-  }
-
-  /// Tangent times x, with constrained rows and columns set to zero.
-  void vmult(MixedVector& y, const MixedVector& x) const {
-    base_.without_constrained(x.u, [&] { apply(y, x); });
-    base_.clear_constrained(y.u);
+  void apply(MixedField& y, const MixedField& x) const {
+    this->loop(y, x, [&](Cell& u, unsigned int batch, const Pressures& p) { return tangent(u, batch, p); });
   }
 
   /// f = the forces of increments of pressure alone, where not constrained.
   void couple(Vector<double>& f, const Vector<double>& p) const {
-    MixedVector x = vector(), y = x;
+    MixedField x = this->vector(), y = x;
     x.p = p;
-    vmult(y, x);
+    this->vmult(y, x);
     f = y.u;
   }
 
-  void clear_constrained(Vector<double>& f) const { base_.clear_constrained(f); }
-
-  CellPressures pressures(const MixedVector& x) const { return pressure_.per_cell(base_.cells(), x.p); }
-
-  void precondition_pressure(Vector<double>& y, const Vector<double>& x) const {
-    if (form_ == Form::mixed) pressure_.divide_by_mass(1 / (1 / lambda_ + 0.5 / mu_), x, y);
-  }
-
  private:
-  using Coefficients = typename PressureSpace<degree>::Coefficients;
   static constexpr int entries = 9 + 6 + 6 + 6 + 36 + 1;  // F, S, Q, G, D, slope of p(g) or g(p)
-
-  template <typename AtCell>
-  void loop(MixedVector& y, const MixedVector& x, const AtCell& at_cell) const {
-    const std::function<void(const typename Base::Cells&, Vector<double>&, const Vector<double>&,
-                             const typename Base::Range&)>
-        add = [&](const auto& cells, Vector<double>& force, const Vector<double>& displacement, const auto& range) {
-          Cell u(cells);
-          for (unsigned int batch = range.first; batch < range.second; ++batch) {
-            u.reinit(batch);
-            u.gather_evaluate(displacement, gradients);
-            const Coefficients r =
-                at_cell(u, batch, form_ == Form::mixed ? pressure_.read(x.p, batch) : Coefficients{});
-            if (form_ == Form::mixed) pressure_.write(r, batch, y.p);
-            u.integrate_scatter(gradients, force);
-          }
-        };
-    base_.cells().cell_loop(add, y.u, x.u, true);
-  }
 
   using AtPoints = std::array<Lane, points>;
 
@@ -107,44 +66,44 @@ class FiniteOperator {
   }
 
   // Adds the contribution of point q to the integrals of `excess` times the pressure functions.
-  void test(const Cell& u, unsigned int q, const Lane& excess, Coefficients& r) const {
+  void test(const Cell& u, unsigned int q, const Lane& excess, Pressures& r) const {
     for (int f = 0; f < pressure_.functions; ++f) r[f] += pressure_.basis[f][q] * excess * u.JxW(q);
   }
 
-  static Matrix3 lane_of(const Tensor& F, std::size_t lane) {
-    Matrix3 f;
+  static Eigen::Matrix3d lane_of(const Tensor& F, std::size_t lane) {
+    Eigen::Matrix3d f;
     for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) f[i][j] = F[i][j][lane];
+      for (int j = 0; j < 3; ++j) f(i, j) = F[i][j][lane];
     return f;
   }
 
-  Coefficients evaluate(Cell& u, unsigned int batch, const Coefficients& p, double& smallest) {
+  Pressures evaluate(Cell& u, unsigned int batch, const Pressures& p, double& smallest) {
     std::array<Tensor, points> F;
     AtPoints g{};
     for (unsigned int q = 0; q < points; ++q) {
       F[q] = u.get_gradient(q);
       for (int i = 0; i < 3; ++i) F[q][i][i] += 1.;
       for (std::size_t lane = 0; lane < Lane::size(); ++lane) {
-        const Matrix3 f = lane_of(F[q], lane);
-        smallest = std::min(smallest, determinant(f));
+        const Eigen::Matrix3d f = lane_of(F[q], lane);
+        smallest = std::min(smallest, f.determinant());
         if (smallest > 0) g[q][lane] = dilatation(law_, f);
       }
     }
     average(u, g);
-    Coefficients r{};
+    Pressures r{};
     for (unsigned int q = 0; q < points && smallest > 0; ++q) {
       Lane at = pressure_.value(p, q), excess = 0.;
       Tensor S;
       for (std::size_t lane = 0; lane < Lane::size(); ++lane) {
-        const ValueAndSlope other = form_ == Form::mixed ? dilatation_at_pressure(law_, lambda_, at[lane])
-                                                         : pressure(law_, lambda_, g[q][lane]);
-        if (form_ == Form::mixed)
+        const ValueAndSlope other =
+            mixed() ? dilatation_at_pressure(law_, lambda_, at[lane]) : pressure(law_, lambda_, g[q][lane]);
+        if (mixed())
           excess[lane] = g[q][lane] - other.value;
         else
           at[lane] = other.value;
         set_lane(lane, F[q], respond(law_, mu_, at[lane], lane_of(F[q], lane)), other.slope, entry(batch, q), S);
       }
-      if (form_ == Form::mixed) test(u, q, excess, r);
+      if (mixed()) test(u, q, excess, r);
       u.submit_gradient(F[q] * S, q);
     }
     return r;
@@ -166,13 +125,13 @@ class FiniteOperator {
     for (const double s : response.S) put(s);
     for (const double s : response.Q) put(s);
     for (const double s : response.G) put(s);
-    for (const Voigt& row : response.D)
+    for (const auto& row : response.D.rowwise())
       for (const double d : row) put(d);
     put(slope);
   }
 
   // dP = h S + F (D dC + Q dp), dC = h^T F + F^T h
-  Coefficients tangent(Cell& u, unsigned int batch, const Coefficients& p) const {
+  Pressures tangent(Cell& u, unsigned int batch, const Pressures& p) const {
     AtPoints dg;
     std::array<Six, points> dC;
     for (unsigned int q = 0; q < points; ++q) {
@@ -191,12 +150,12 @@ class FiniteOperator {
       for (int i = 0; i < 6; ++i) dg[q] += G[i] * dC[q][i];
     }
     average(u, dg);
-    Coefficients r{};
+    Pressures r{};
     for (unsigned int q = 0; q < points; ++q) {
       const float* from = entry(batch, q);
       const Lane slope = widen(from + 63 * Lane::size());
-      const Lane dp = form_ == Form::mixed ? pressure_.value(p, q) : slope * dg[q];
-      if (form_ == Form::mixed) test(u, q, dg[q] - slope * dp, r);
+      const Lane dp = mixed() ? pressure_.value(p, q) : slope * dg[q];
+      if (mixed()) test(u, q, dg[q] - slope * dp, r);
       const Six S = read_six(from + 9 * Lane::size()), Q = read_six(from + 15 * Lane::size());
       Six dS;
       for (int i = 0; i < 6; ++i) {
@@ -243,11 +202,8 @@ class FiniteOperator {
   const float* entry(unsigned int batch, unsigned int q) const { return table_.data() + position(batch, q); }
   float* entry(unsigned int batch, unsigned int q) { return table_.data() + position(batch, q); }
 
-  const Base& base_;
-  PressureSpace<degree> pressure_;
   Law law_;
-  Form form_;
-  double mu_, lambda_;
+  double mu_;
   std::vector<float> table_;  // per batch, quadrature point, entry and lane
 };
 

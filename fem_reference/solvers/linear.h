@@ -1,11 +1,11 @@
-// Linear statics, for any operator that multiplies by the stiffness.  Part of each solver, like mixed_vector.h.
+// Linear statics, for any operator that multiplies by the stiffness.  Part of each solver, like mixed_field.h.
 #pragma once
 
 #include <fmt/format.h>
 
 #include "fem_reference/solvers/block_triangular.h"
 #include "fem_reference/solvers/krylov.h"
-#include "fem_reference/solvers/mixed_vector.h"
+#include "fem_reference/solvers/mixed_field.h"
 #include "fem_reference/system/elastic_system.h"
 #include "problem/system/progress.h"
 
@@ -30,13 +30,13 @@ ElasticAnswer solve_linear(Operator&& K, const ElasticSystem& system, const DofV
   const BlockTriangular<std::remove_cvref_t<Operator>> precondition(K, system);
   const ResidualProduct dot(system);
   int products = 0;
-  const auto multiply = [&](MixedVector& y, const MixedVector& v) {
+  const auto multiply = [&](MixedField& y, const MixedField& v) {
     ++products;
     progress::detail([&] { return fmt::format("{} unknowns, iteration {}", load.size(), products); });
     K.vmult(y, v);
   };
   ElasticAnswer answer;
-  MixedVector x = K.vector(), r = x, f = x, dx = x;
+  MixedField x = K.vector(), r = x, f = x, dx = x;
   x.u = displacement;
   double start = 0;  // reference value of the residual's norm
   for (int repeat = 0; repeat < most_repeats; ++repeat) {

@@ -1,9 +1,10 @@
-// Matrix-free mixed displacement-pressure operator.  Part of elastic_solver.cpp, like stiffness.h.
+// Matrix-free operators of small strain, with pressures or without.  Part of elastic_solver.cpp, like stiffness.h.
 #pragma once
 
 #include "fem_reference/grid/processes.h"
-#include "fem_reference/solvers/mixed_vector.h"
+#include "fem_reference/solvers/mixed_field.h"
 #include "fem_reference/solvers/stiffness.h"
+#include "fem_reference/solvers/v_cycle.h"
 #include "fem_reference/system/elastic_system.h"
 
 namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE {
@@ -82,53 +83,111 @@ struct PressureSpace {
   Vector<double> inverse_mass;  ///< reciprocals of the diagonal; zero in lanes without a cell
 };
 
-// [ 2 mu eps : eps   p div v       ]
-// [ q div u          -p q / lambda ]
-// Symmetric, indefinite; p = lambda div u, projected onto the pressure space.
-template <int degree>
-class MixedOperator {
+constexpr unsigned int active_cells = dealii::numbers::invalid_unsigned_int;
+
+// What operators of small and of finite strain share: displacements, pressures where the form has them, and the
+// preconditioners of both.  `Own` has apply(y, x).
+template <int degree, typename Own>
+class OperatorWithPressures {
  public:
-  using Shear = Stiffness<degree, double>;
-  using Cell = typename Shear::Cell;
+  using Base = Stiffness<degree, double>;
+  using Cell = typename Base::Cell;
   using Lane = Lanes<double>;
 
-  MixedOperator(const Shear& shear, double lambda) : shear_(shear), pressure_(shear.cells()), lambda_(lambda) {}
-
-  MixedVector vector() const {
-    MixedVector x;
-    x.u = shear_.vector();
-    x.p.reinit(pressure_.inverse_mass);
+  MixedField vector() const {
+    MixedField x;
+    x.u = base_.vector();
+    if (mixed()) x.p.reinit(pressure_.inverse_mass);
     return x;
   }
 
-  void vmult(MixedVector& y, const MixedVector& x) const {
-    shear_.without_constrained(x.u, [&] { apply(y, x); });
-    shear_.clear_constrained(y.u);
+  /// The same as apply(), with constrained rows and columns set to zero.
+  void vmult(MixedField& y, const MixedField& x) const {
+    base_.without_constrained(x.u, [&] { static_cast<const Own&>(*this).apply(y, x); });
+    base_.clear_constrained(y.u);
   }
 
-  /// The internal force of every degree of freedom, and the integrals of (div u - p / lambda) q.
-  void apply(MixedVector& y, const MixedVector& x) const {
-    const std::function<void(const typename Shear::Cells&, Vector<double>&, const Vector<double>&,
-                             const typename Shear::Range&)>
+  void clear_constrained(Vector<double>& f) const { base_.clear_constrained(f); }
+  CellPressures pressures(const MixedField& x) const { return pressure_.per_cell(base_.cells(), x.p); }
+  void precondition_displacement(Vector<double>& z, const Vector<double>& r) const { multigrid_.vmult(z, r); }
+  /// Multiplies by (M (1/lambda + 1/(2 mu)))^-1, an approximate inverse of the Schur complement.
+  void precondition_pressure(Vector<double>& y, const Vector<double>& x) const {
+    if (mixed()) pressure_.divide_by_mass(1 / (1 / lambda_ + 0.5 / base_.coefficients().mu), x, y);
+  }
+  bool factorise(const MixedField&) { return false; }
+
+ protected:
+  using Pressures = typename PressureSpace<degree>::Coefficients;  // of a batch of cells
+
+  OperatorWithPressures(const ElasticSystem& system, const ElasticCoefficients<double>& coefficients)
+      : form_(system.form),
+        lambda_(system.lambda),
+        base_(*system.body.mapping, system.dof_handler, active_cells, system.constrained, coefficients),
+        pressure_(base_.cells()),
+        multigrid_(system, smoothed(system)) {}
+
+  bool mixed() const { return form_ == Form::mixed; }
+
+  // y from the gradients of x.u: at_cell(u, batch, p) submits the stress and returns the residuals of the pressures p.
+  template <typename AtCell>
+  void loop(MixedField& y, const MixedField& x, const AtCell& at_cell) const {
+    const std::function<void(const typename Base::Cells&, Vector<double>&, const Vector<double>&,
+                             const typename Base::Range&)>
         add = [&](const auto& cells, Vector<double>& force, const Vector<double>& displacement, const auto& range) {
           Cell u(cells);
           for (unsigned int batch = range.first; batch < range.second; ++batch) {
             u.reinit(batch);
             u.gather_evaluate(displacement, gradients);
-            pressure_.write(submit(u, pressure_.read(x.p, batch)), batch, y.p);
+            const Pressures r = at_cell(u, batch, mixed() ? pressure_.read(x.p, batch) : Pressures{});
+            if (mixed()) pressure_.write(r, batch, y.p);
             u.integrate_scatter(gradients, force);
           }
         };
-    shear_.cells().cell_loop(add, y.u, x.u, true);
+    base_.cells().cell_loop(add, y.u, x.u, true);
+  }
+
+ private:
+  // The operator of the multigrid: the stiffness of the displacement form, or for the mixed form its shear part alone.
+  static ElasticCoefficients<float> smoothed(const ElasticSystem& system) {
+    if (system.form == Form::mixed) return {float(system.mu), 0, false};
+    return {float(system.mu), float(system.lambda), system.form == Form::mean_dilatation};
+  }
+
+ protected:
+  Form form_;
+  double lambda_;
+  Base base_;
+  PressureSpace<degree> pressure_;
+  VCycle<degree> multigrid_;
+};
+
+// [ 2 mu eps : eps   p div v       ]
+// [ q div u          -p q / lambda ]
+// Symmetric, indefinite; p = lambda div u, projected onto the pressure space.  Without pressures the stiffness.
+template <int degree>
+class LinearOperator : public OperatorWithPressures<degree, LinearOperator<degree>> {
+  using Shared = OperatorWithPressures<degree, LinearOperator<degree>>;
+  using Shared::base_, Shared::pressure_, Shared::mixed;
+  using typename Shared::Cell, typename Shared::Lane, typename Shared::Pressures;
+
+ public:
+  explicit LinearOperator(const ElasticSystem& system)
+      : Shared(system,
+               {system.mu, system.form == Form::mixed ? 0 : system.lambda, system.form == Form::mean_dilatation}) {}
+
+  /// The internal force of every degree of freedom, and the integrals of (div u - p / lambda) q.
+  void apply(MixedField& y, const MixedField& x) const {
+    if (!mixed()) return base_.apply(y.u, x.u);
+    this->loop(y, x, [&](Cell& u, unsigned int, const Pressures& p) { return submit(u, p); });
   }
 
   /// f = the forces of pressures alone, where not constrained.
   void couple(Vector<double>& f, const Vector<double>& p) const {
     f = 0;
-    Cell u(shear_.cells());
-    for (unsigned int batch = 0; batch < shear_.cells().n_cell_batches(); ++batch) {
+    Cell u(base_.cells());
+    for (unsigned int batch = 0; batch < base_.cells().n_cell_batches(); ++batch) {
       u.reinit(batch);
-      const auto c = pressure_.read(p, batch);
+      const Pressures c = pressure_.read(p, batch);
       for (unsigned int q = 0; q < Cell::static_n_q_points; ++q) {
         dealii::Tensor<2, 3, Lane> stress;
         for (int i = 0; i < 3; ++i) stress[i][i] = pressure_.value(c, q);
@@ -137,21 +196,13 @@ class MixedOperator {
       u.integrate_scatter(gradients, f);
     }
     f.compress(dealii::VectorOperation::add);
-    shear_.clear_constrained(f);
-  }
-
-  CellPressures pressures(const MixedVector& x) const { return pressure_.per_cell(shear_.cells(), x.p); }
-
-  /// Multiplies by (M (1/lambda + 1/(2 mu)))^-1, an approximate inverse of the Schur complement.
-  void precondition_pressure(Vector<double>& y, const Vector<double>& x) const {
-    pressure_.divide_by_mass(1 / (1 / lambda_ + 0.5 / shear_.coefficients().mu), x, y);
+    base_.clear_constrained(f);
   }
 
  private:
-  typename PressureSpace<degree>::Coefficients submit(Cell& u,
-                                                      const typename PressureSpace<degree>::Coefficients& p) const {
-    const Lane mu = shear_.coefficients().mu, compliance = 1 / lambda_;
-    typename PressureSpace<degree>::Coefficients r{};
+  Pressures submit(Cell& u, const Pressures& p) const {
+    const Lane mu = base_.coefficients().mu, compliance = 1 / this->lambda_;
+    Pressures r{};
     for (unsigned int q = 0; q < Cell::static_n_q_points; ++q) {
       const auto h = u.get_gradient(q);
       const Lane pressure = pressure_.value(p, q);
@@ -163,10 +214,6 @@ class MixedOperator {
     }
     return r;
   }
-
-  const Shear& shear_;
-  PressureSpace<degree> pressure_;
-  double lambda_;
 };
 
 }  // namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE

@@ -4,31 +4,22 @@
 #include <deal.II/lac/dynamic_sparsity_pattern.h>
 #include <fmt/format.h>
 
-#include "fem_reference/solvers/petsc.h"
-
 namespace springproof::fem {
 namespace {
 
 // A PETSc view of the locally owned entries, without a copy.
-class Wrapped {
- public:
-  explicit Wrapped(const DofVector& v) {
-    succeed(VecCreateMPIWithArray(v.get_mpi_communicator(), 1, PetscInt(v.locally_owned_size()), PetscInt(v.size()),
-                                  v.begin(), &vector_));
-  }
-  ~Wrapped() { VecDestroy(&vector_); }
-  Wrapped(const Wrapped&) = delete;
-  Wrapped& operator=(const Wrapped&) = delete;
-  operator Vec() const { return vector_; }
-
- private:
-  Vec vector_ = nullptr;
-};
+OwnedVec view(const DofVector& v) {
+  OwnedVec vector;
+  succeed(VecCreateMPIWithArray(v.get_mpi_communicator(), 1, PetscInt(v.locally_owned_size()), PetscInt(v.size()),
+                                v.begin(), &vector));
+  return vector;
+}
 
 void set_rigid_motions(Mat matrix, const dealii::Mapping<3>& mapping, const dealii::DoFHandler<3>& dof_handler) {
   std::map<dealii::types::global_dof_index, dealii::Point<3>> points;
   dealii::DoFTools::map_dofs_to_support_points(mapping, dof_handler, points);
-  Vec coordinates = nullptr;
+  OwnedVec coordinates;
+  Owned<MatNullSpace, MatNullSpaceDestroy> motions;
   succeed(MatCreateVecs(matrix, &coordinates, nullptr));
   succeed(VecSetBlockSize(coordinates, 3));
   PetscInt first = 0, end = 0;
@@ -36,11 +27,8 @@ void set_rigid_motions(Mat matrix, const dealii::Mapping<3>& mapping, const deal
   for (PetscInt i = first; i < end; ++i) succeed(VecSetValue(coordinates, i, points.at(i)[i % 3], INSERT_VALUES));
   succeed(VecAssemblyBegin(coordinates));
   succeed(VecAssemblyEnd(coordinates));
-  MatNullSpace motions = nullptr;
   succeed(MatNullSpaceCreateRigidBody(coordinates, &motions));
   succeed(MatSetNearNullSpace(matrix, motions));
-  succeed(MatNullSpaceDestroy(&motions));
-  succeed(VecDestroy(&coordinates));
 }
 
 MPI_Comm communicator(Mat matrix) { return PetscObjectComm(reinterpret_cast<PetscObject>(matrix)); }
@@ -74,6 +62,33 @@ std::string use_one_of(PC preconditioner, PetscInt most_factored, Mat matrix, co
   return "algebraic multigrid";
 }
 
+/// Makes the preconditioner of `fine` a cycle of two levels.  Returns that of the linear one.
+PC set_levels(PC preconditioner, Mat fine, const LinearLevel& linear) {
+  succeed(PCSetType(preconditioner, PCMG));
+  succeed(PCMGSetLevels(preconditioner, 2, nullptr));
+  succeed(PCMGSetInterpolation(preconditioner, 1, linear.interpolation.petsc()));
+  KSP coarse = nullptr, smoother = nullptr;
+  succeed(PCMGGetCoarseSolve(preconditioner, &coarse));
+  succeed(KSPSetOperators(coarse, linear.matrix.petsc(), linear.matrix.petsc()));
+  succeed(KSPSetType(coarse, KSPPREONLY));
+  succeed(PCMGGetSmoother(preconditioner, 1, &smoother));
+  succeed(KSPSetOperators(smoother, fine, fine));
+  succeed(KSPSetType(smoother, KSPCHEBYSHEV));
+  succeed(KSPSetNormType(smoother, KSP_NORM_NONE));
+  succeed(KSPSetTolerances(smoother, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, 4));
+  // Slivers cause a few eigenvalues far above the rest: the usual ten steps of the estimate miss them, and a cycle that
+  // amplifies them is not positive definite.
+  KSP estimate = nullptr;
+  succeed(KSPChebyshevEstEigSet(smoother, 0, 0.1, 0, 1.1));
+  succeed(KSPChebyshevEstEigGetKSP(smoother, &estimate));
+  succeed(KSPSetTolerances(estimate, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, 50));
+  PC jacobi = nullptr, below = nullptr;
+  succeed(KSPGetPC(smoother, &jacobi));
+  succeed(PCSetType(jacobi, PCJACOBI));
+  succeed(KSPGetPC(coarse, &below));
+  return below;
+}
+
 }  // namespace
 
 SparseMatrix::SparseMatrix(const dealii::IndexSet& rows, const dealii::IndexSet& columns,
@@ -91,8 +106,6 @@ SparseMatrix::SparseMatrix(const dealii::IndexSet& rows, const dealii::IndexSet&
   succeed(MatSeqAIJSetPreallocationCSR(matrix_, starts.data(), indices.data(), nullptr));
   succeed(MatMPIAIJSetPreallocationCSR(matrix_, starts.data(), indices.data(), nullptr));
 }
-
-SparseMatrix::~SparseMatrix() { MatDestroy(&matrix_); }
 
 void SparseMatrix::clear() { succeed(MatZeroEntries(matrix_)); }
 
@@ -112,58 +125,23 @@ void SparseMatrix::finish() {
   succeed(MatAssemblyEnd(matrix_, MAT_FINAL_ASSEMBLY));
 }
 
-void SparseMatrix::multiply(DofVector& y, const DofVector& x) const {
-  succeed(MatMult(matrix_, Wrapped(x), Wrapped(y)));
-}
+void SparseMatrix::multiply(DofVector& y, const DofVector& x) const { succeed(MatMult(matrix_, view(x), view(y))); }
 
 void SparseMatrix::multiply_transposed_and_add(DofVector& y, const DofVector& x) const {
-  const Wrapped to(y);
-  succeed(MatMultTransposeAdd(matrix_, Wrapped(x), to, to));
+  const OwnedVec to = view(y);
+  succeed(MatMultTransposeAdd(matrix_, view(x), to, to));
 }
 
-Multigrid::Multigrid(const SparseMatrix& matrix, const dealii::Mapping<3>& mapping,
+Multigrid::Multigrid(const SparseMatrix& matrix, const LinearLevel* linear, const dealii::Mapping<3>& mapping,
                      const dealii::DoFHandler<3>& dof_handler, int most_factored) {
   succeed(PCCreate(communicator(matrix.petsc()), &preconditioner_));
   succeed(PCSetOperators(preconditioner_, matrix.petsc(), matrix.petsc()));
-  name_ = use_one_of(preconditioner_, most_factored, matrix.petsc(), mapping, dof_handler);
+  const PC solved = linear ? set_levels(preconditioner_, matrix.petsc(), *linear) : preconditioner_;
+  name_ = (linear ? "linear elements by " : "") +
+          use_one_of(solved, most_factored, (linear ? linear->matrix : matrix).petsc(), mapping, dof_handler);
   succeed(PCSetUp(preconditioner_));
 }
 
-Multigrid::Multigrid(const SparseMatrix& matrix, const dealii::Mapping<3>& mapping, const LinearLevel& linear,
-                     int most_factored) {
-  succeed(PCCreate(communicator(matrix.petsc()), &preconditioner_));
-  succeed(PCSetOperators(preconditioner_, matrix.petsc(), matrix.petsc()));
-  succeed(PCSetType(preconditioner_, PCMG));
-  succeed(PCMGSetLevels(preconditioner_, 2, nullptr));
-  succeed(PCMGSetInterpolation(preconditioner_, 1, linear.interpolation.petsc()));
-  KSP coarse = nullptr, smoother = nullptr;
-  succeed(PCMGGetCoarseSolve(preconditioner_, &coarse));
-  succeed(KSPSetOperators(coarse, linear.matrix.petsc(), linear.matrix.petsc()));
-  succeed(KSPSetType(coarse, KSPPREONLY));
-  PC below = nullptr;
-  succeed(KSPGetPC(coarse, &below));
-  name_ = "linear elements by " + use_one_of(below, most_factored, linear.matrix.petsc(), mapping, linear.dof_handler);
-  succeed(PCMGGetSmoother(preconditioner_, 1, &smoother));
-  succeed(KSPSetOperators(smoother, matrix.petsc(), matrix.petsc()));
-  succeed(KSPSetType(smoother, KSPCHEBYSHEV));
-  succeed(KSPSetNormType(smoother, KSP_NORM_NONE));
-  succeed(KSPSetTolerances(smoother, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, 4));
-  // Slivers cause a few eigenvalues far above the rest: the usual ten steps of the estimate miss them, and a cycle that
-  // amplifies them is not positive definite.
-  KSP estimate = nullptr;
-  succeed(KSPChebyshevEstEigSet(smoother, 0, 0.1, 0, 1.1));
-  succeed(KSPChebyshevEstEigGetKSP(smoother, &estimate));
-  succeed(KSPSetTolerances(estimate, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, 50));
-  PC jacobi = nullptr;
-  succeed(KSPGetPC(smoother, &jacobi));
-  succeed(PCSetType(jacobi, PCJACOBI));
-  succeed(PCSetUp(preconditioner_));
-}
-
-Multigrid::~Multigrid() { PCDestroy(&preconditioner_); }
-
-void Multigrid::vmult(DofVector& y, const DofVector& x) const {
-  succeed(PCApply(preconditioner_, Wrapped(x), Wrapped(y)));
-}
+void Multigrid::vmult(DofVector& y, const DofVector& x) const { succeed(PCApply(preconditioner_, view(x), view(y))); }
 
 }  // namespace springproof::fem

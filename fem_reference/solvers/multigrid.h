@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "fem_reference/solvers/petsc.h"
 #include "fem_reference/system/elastic_system.h"
 
 namespace springproof::fem {
@@ -19,9 +20,6 @@ class SparseMatrix {
   /// `pattern` contains the locally owned rows.
   SparseMatrix(const dealii::IndexSet& rows, const dealii::IndexSet& columns,
                const dealii::DynamicSparsityPattern& pattern, MPI_Comm comm);
-  ~SparseMatrix();
-  SparseMatrix(const SparseMatrix&) = delete;
-  SparseMatrix& operator=(const SparseMatrix&) = delete;
 
   void clear();
   /// `values` in row-major order.
@@ -35,14 +33,13 @@ class SparseMatrix {
   Mat petsc() const { return matrix_; }
 
  private:
-  Mat matrix_ = nullptr;
+  OwnedMat matrix_;
 };
 
 /// Stiffness of linear elements on the same cells.
 struct LinearLevel {
   const SparseMatrix& matrix;
   const SparseMatrix& interpolation;  ///< from the linear to the quadratic elements
-  const dealii::DoFHandler<3>& dof_handler;
 };
 
 /// One V-cycle: GAMG, smoothed aggregation with the rigid-body modes as near null space, or Cholesky factors of a small
@@ -50,21 +47,16 @@ struct LinearLevel {
 /// cheaper.  Symmetric, positive definite if the matrices are.
 class Multigrid {
  public:
-  /// Rows are numbered as the degrees of freedom of the handler, three per node; the matrices must outlive the
-  /// preconditioner.  Matrices (the linear level's, if given) with at most `most_factored` rows are factored.
-  Multigrid(const SparseMatrix& matrix, const dealii::Mapping<3>& mapping, const dealii::DoFHandler<3>& dof_handler,
-            int most_factored);
-  Multigrid(const SparseMatrix& matrix, const dealii::Mapping<3>& mapping, const LinearLevel& linear,
-            int most_factored);
-  ~Multigrid();
-  Multigrid(const Multigrid&) = delete;
-  Multigrid& operator=(const Multigrid&) = delete;
+  /// Rows, of the linear level if there is one, are numbered as the degrees of freedom of the handler, three per node;
+  /// the matrices must outlive the preconditioner.  A matrix there with at most `most_factored` rows is factored.
+  Multigrid(const SparseMatrix& matrix, const LinearLevel* linear, const dealii::Mapping<3>& mapping,
+            const dealii::DoFHandler<3>& dof_handler, int most_factored);
 
   void vmult(DofVector& y, const DofVector& x) const;
   const std::string& name() const { return name_; }  ///< for the report
 
  private:
-  PC preconditioner_ = nullptr;
+  Owned<PC, PCDestroy> preconditioner_;
   std::string name_;
 };
 

@@ -1,5 +1,5 @@
 // Newton's method with load steps, for any operator that multiplies by the tangent.  Part of each solver, like
-// mixed_vector.h.
+// mixed_field.h.
 #pragma once
 
 #include <deal.II/grid/grid_tools.h>
@@ -7,7 +7,7 @@
 
 #include "fem_reference/solvers/block_triangular.h"
 #include "fem_reference/solvers/krylov.h"
-#include "fem_reference/solvers/mixed_vector.h"
+#include "fem_reference/solvers/mixed_field.h"
 #include "fem_reference/system/elastic_system.h"
 #include "problem/system/progress.h"
 
@@ -39,7 +39,7 @@ class Newton {
     FiniteAnswer answer;
     answer.load_reached = 0;
     double step = problem_.first_step;
-    MixedVector accepted = x_;
+    MixedField accepted = x_;
     while (answer.load_reached < 1) {
       const double target = std::min(1.0, answer.load_reached + step);
       x_ = accepted;
@@ -81,7 +81,7 @@ class Newton {
     // The prescribed increment enters through the first tangent: K du = r with du given where constrained.
     problem_.prescribe(from, dx_.u);
     problem_.prescribe(to, z_.u);
-    MixedVector given = K_.vector();
+    MixedField given = K_.vector();
     for (const unsigned int i : system_.constrained)
       if (given.u.in_local_range(i)) given.u(i) = z_.u(i) - dx_.u(i);
     K_.apply(f_, given);
@@ -110,7 +110,7 @@ class Newton {
     K_.prepare(x_);
     const BlockTriangular<Operator> precondition(K_, system_);
     int products = answer.iterations;
-    const auto multiply = [&](MixedVector& y, const MixedVector& v) {
+    const auto multiply = [&](MixedField& y, const MixedField& v) {
       ++products;
       progress::detail([&] {
         return fmt::format("{} unknowns, {:.3g} % of the load reached, load step {}, Newton step {}, iteration {}",
@@ -131,7 +131,7 @@ class Newton {
   // x_ += dx_, halved until no cell is inverted; the first of a load step (`whole`) is not shortened: it has the
   // prescribed increment, and where it inverts cells the load step is too long.
   bool advance(bool whole) {
-    const MixedVector start = x_;
+    const MixedField start = x_;
     for (double part = 1; part > 0.05; part /= 2) {
       x_.add(part, dx_);
       if (K_.linearise(f_, x_) > 0) return true;
@@ -162,7 +162,7 @@ class Newton {
   const FiniteProblem& problem_;
   const DofVector& load_;
   ResidualProduct dot_;
-  MixedVector x_, r_, f_, dx_, z_;
+  MixedField x_, r_, f_, dx_, z_;
   double round_off_;
 };
 

@@ -8,15 +8,11 @@ namespace springproof::fem {
 namespace {
 
 /// A vector of PETSc's that views the entries of Eigen's.
-struct View {
-  explicit View(const Eigen::VectorXd& x) {
-    succeed(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, PetscInt(x.size()), x.data(), &vector));
-  }
-  View(const View&) = delete;
-  View& operator=(const View&) = delete;
-  ~View() { VecDestroy(&vector); }
-  Vec vector = nullptr;
-};
+OwnedVec view(const Eigen::VectorXd& x) {
+  OwnedVec vector;
+  succeed(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, PetscInt(x.size()), x.data(), &vector));
+  return vector;
+}
 
 }  // namespace
 
@@ -29,23 +25,18 @@ void succeed(PetscErrorCode code) {
 
 SymmetricFactors::SymmetricFactors(Mat matrix) {
   MatFactorInfo info;
-  IS rows = nullptr, columns = nullptr;
+  Owned<IS, ISDestroy> rows, columns;
   succeed(MatSetOption(matrix, MAT_SYMMETRIC, PETSC_TRUE));
   succeed(MatGetFactor(matrix, MATSOLVERMUMPS, MAT_FACTOR_CHOLESKY, &factors_));
   succeed(MatFactorInfoInitialize(&info));
   succeed(MatGetOrdering(matrix, MATORDERINGEXTERNAL, &rows, &columns));
   succeed(MatCholeskyFactorSymbolic(factors_, matrix, rows, &info));
   succeed(MatCholeskyFactorNumeric(factors_, matrix, &info));
-  succeed(ISDestroy(&rows));
-  succeed(ISDestroy(&columns));
 }
-
-SymmetricFactors::~SymmetricFactors() { MatDestroy(&factors_); }
 
 Eigen::VectorXd SymmetricFactors::solve(const Eigen::VectorXd& b) const {
   Eigen::VectorXd x(b.size());
-  const View from(b), to(x);
-  succeed(MatSolve(factors_, from.vector, to.vector));
+  succeed(MatSolve(factors_, view(b), view(x)));
   return x;
 }
 

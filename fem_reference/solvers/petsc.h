@@ -5,19 +5,21 @@
 
 #include <Eigen/Dense>
 
+#include "problem/system/owned.h"
+
 namespace springproof::fem {
 
 /// @throws std::runtime_error with PETSc's own words, unless the code is 0.
 void succeed(PetscErrorCode code);
+
+using OwnedMat = Owned<Mat, MatDestroy>;
+using OwnedVec = Owned<Vec, VecDestroy>;
 
 /// L D L^T of a symmetric matrix, definite or not (MUMPS).
 class SymmetricFactors {
  public:
   /// Only the upper triangle is read.
   explicit SymmetricFactors(Mat matrix);
-  ~SymmetricFactors();
-  SymmetricFactors(const SymmetricFactors&) = delete;
-  SymmetricFactors& operator=(const SymmetricFactors&) = delete;
 
   /// x = A^-1 b
   Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
@@ -26,7 +28,7 @@ class SymmetricFactors {
   PetscInt negative_pivots() const;
 
  private:
-  Mat factors_ = nullptr;
+  OwnedMat factors_;
 };
 
 }  // namespace springproof::fem

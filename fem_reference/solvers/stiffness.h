@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "fem_reference/solvers/mixed_vector.h"
+#include "fem_reference/solvers/mixed_field.h"
 
 namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE {
 
@@ -25,21 +25,56 @@ using Lanes = dealii::VectorizedArray<Number, lane_count<Number>>;
 constexpr auto gradients = dealii::EvaluationFlags::gradients;
 
 template <typename Number>
-struct Coefficients {
+struct ElasticCoefficients {
   Number mu, lambda;
   bool mean_dilatation;
 };
 
-// The stiffness on one level, or on the active cells.  Constrained rows and columns are those of the identity matrix.
+// A stiffness whose constrained rows and columns are those of the identity matrix.  `Own` has apply(y, x): the internal
+// force of every degree of freedom.
+template <typename Own, typename Number>
+class ConstrainedStiffness : public dealii::Subscriptor {
+ public:
+  unsigned int m() const { return rows_; }
+  Number el(unsigned int, unsigned int) const { return Number(1); }  // required by PreconditionChebyshev
+
+  void vmult(Vector<Number>& y, const Vector<Number>& x) const {
+    without_constrained(x, [&] { static_cast<const Own&>(*this).apply(y, x); });
+    for (const unsigned int i : constrained_) y.local_element(i) = x.local_element(i);
+  }
+
+  // Calls f() while the constrained entries of x are zero.
+  template <typename F>
+  void without_constrained(const Vector<Number>& x, const F& f) const {
+    auto& x_ = const_cast<Vector<Number>&>(x);
+    saved_.clear();
+    for (const unsigned int i : constrained_) saved_.push_back(std::exchange(x_.local_element(i), Number(0)));
+    f();
+    for (std::size_t k = 0; k < constrained_.size(); ++k) x_.local_element(constrained_[k]) = saved_[k];
+  }
+
+  void clear_constrained(Vector<Number>& v) const {
+    for (const unsigned int i : constrained_) v.local_element(i) = 0;
+  }
+
+ protected:
+  unsigned int rows_ = 0;
+  std::vector<unsigned int> constrained_;  // indices among the locally owned degrees of freedom
+
+ private:
+  mutable std::vector<Number> saved_;
+};
+
+// The stiffness on one level, or on the active cells.
 template <int degree, typename Number>
-class Stiffness : public dealii::Subscriptor {
+class Stiffness : public ConstrainedStiffness<Stiffness<degree, Number>, Number> {
  public:
   using Cell = dealii::FEEvaluation<3, degree, degree + 1, 3, Number, Lanes<Number>>;
   using Cells = dealii::MatrixFree<3, Number, Lanes<Number>>;
   using Range = std::pair<unsigned int, unsigned int>;
 
   Stiffness(const dealii::Mapping<3>& mapping, const dealii::DoFHandler<3>& dof_handler, unsigned int level,
-            const std::vector<unsigned int>& constrained, const Coefficients<Number>& coefficients)
+            const std::vector<unsigned int>& constrained, const ElasticCoefficients<Number>& coefficients)
       : coefficients_(coefficients) {
     typename Cells::AdditionalData data;
     data.tasks_parallel_scheme = Cells::AdditionalData::none;
@@ -52,44 +87,20 @@ class Stiffness : public dealii::Subscriptor {
     }();
     cells_.reinit(mapping, dof_handler, unconstrained, dealii::QGauss<1>(degree + 1), data);
     const bool active = level == dealii::numbers::invalid_unsigned_int;
-    rows_ = active ? dof_handler.n_dofs() : dof_handler.n_dofs(level);
+    this->rows_ = active ? dof_handler.n_dofs() : dof_handler.n_dofs(level);
     const dealii::IndexSet& owned =
         active ? dof_handler.locally_owned_dofs() : dof_handler.locally_owned_mg_dofs(level);
     for (const unsigned int i : constrained)
-      if (owned.is_element(i)) constrained_.push_back(owned.index_within_set(i));
-    saved_.resize(constrained_.size());
+      if (owned.is_element(i)) this->constrained_.push_back(owned.index_within_set(i));
   }
 
   const Cells& cells() const { return cells_; }
-  const Coefficients<Number>& coefficients() const { return coefficients_; }
-  unsigned int m() const { return rows_; }
-  Number el(unsigned int, unsigned int) const { return Number(1); }  // required by PreconditionChebyshev
+  const ElasticCoefficients<Number>& coefficients() const { return coefficients_; }
 
   Vector<Number> vector() const {
     Vector<Number> v;
     cells_.initialize_dof_vector(v);
     return v;
-  }
-
-  void vmult(Vector<Number>& y, const Vector<Number>& x) const {
-    without_constrained(x, [&] { apply(y, x); });
-    for (std::size_t i = 0; i < constrained_.size(); ++i) y.local_element(constrained_[i]) = saved_[i];
-  }
-
-  // Calls f() while the constrained entries of x are set to zero.
-  template <typename F>
-  void without_constrained(const Vector<Number>& x, const F& f) const {
-    auto& x_ = const_cast<Vector<Number>&>(x);
-    for (std::size_t i = 0; i < constrained_.size(); ++i) {
-      saved_[i] = x.local_element(constrained_[i]);
-      x_.local_element(constrained_[i]) = 0;
-    }
-    f();
-    for (std::size_t i = 0; i < constrained_.size(); ++i) x_.local_element(constrained_[i]) = saved_[i];
-  }
-
-  void clear_constrained(Vector<Number>& v) const {
-    for (const unsigned int i : constrained_) v.local_element(i) = 0;
   }
 
   // The internal force of every degree of freedom.
@@ -120,7 +131,7 @@ class Stiffness : public dealii::Subscriptor {
           }
         };
     cells_.cell_loop(add, diagonal, 0u, true);
-    for (const unsigned int i : constrained_) diagonal.local_element(i) = 1;
+    for (const unsigned int i : this->constrained_) diagonal.local_element(i) = 1;
     for (unsigned int i = 0; i < diagonal.locally_owned_size(); ++i)
       diagonal.local_element(i) = Number(1) / diagonal.local_element(i);
     return diagonal;
@@ -128,10 +139,10 @@ class Stiffness : public dealii::Subscriptor {
 
   // The matrix of a level as contributions of its cells; ones on the diagonal of constrained rows.
   std::vector<Eigen::Triplet<double>> entries() const {
-    std::vector<char> held(rows_, 0);
-    for (const unsigned int i : constrained_) held[i] = 1;
+    std::vector<char> held(this->rows_, 0);
+    for (const unsigned int i : this->constrained_) held[i] = 1;
     std::vector<Eigen::Triplet<double>> entries;
-    for (const unsigned int i : constrained_) entries.emplace_back(i, i, 1.0);
+    for (const unsigned int i : this->constrained_) entries.emplace_back(i, i, 1.0);
     const auto& place = cells_.get_shape_info().lexicographic_numbering;
     std::vector<dealii::types::global_dof_index> numbers(Cell::static_dofs_per_cell);
     Cell u(cells_);
@@ -249,10 +260,7 @@ class Stiffness : public dealii::Subscriptor {
 
   Cells cells_;
   dealii::AlignedVector<dealii::Tensor<2, 3, Lanes<Number>>> to_rest_;  // inverse deformation gradient, or empty
-  std::vector<unsigned int> constrained_;  // indices among the locally owned degrees of freedom
-  Coefficients<Number> coefficients_;
-  mutable std::vector<Number> saved_;
-  unsigned int rows_;
+  ElasticCoefficients<Number> coefficients_;
 };
 
 }  // namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE

@@ -34,19 +34,15 @@ class Tetrahedra {
   };
 
   Tetrahedra(const dealii::DoFHandler<3>& displacement, const dealii::DoFHandler<3>* pressure) {
-    std::vector<dealii::types::global_dof_index> u(30), p(4);
     std::size_t count = 0;
     for (const auto& cell : displacement.active_cell_iterators()) {
       const std::size_t lane = count++ % Lane::size();
       if (lane == 0) batches_.emplace_back();
       Batch& batch = batches_.back();
-      cell->get_dof_indices(u);
-      place_nodes(displacement.get_fe(), u, lane, batch);
+      place_nodes(displacement.get_fe(), dofs_in(cell, displacement), lane, batch);
       place_gradients(*cell, lane, batch);
       if (!pressure) continue;
-      const dealii::DoFHandler<3>::active_cell_iterator same(&pressure->get_triangulation(), cell->level(),
-                                                             cell->index(), pressure);
-      same->get_dof_indices(p);
+      const auto p = dofs_in(cell, *pressure);
       for (int i = 0; i < 4; ++i) batch.corner[i][lane] = p[i];
     }
   }
@@ -160,42 +156,19 @@ class Tetrahedra {
   std::vector<Batch> batches_;
 };
 
-// The stiffness; constrained rows and columns are those of the identity matrix.
 template <typename Number>
-class TetrahedraStiffness : public dealii::Subscriptor {
+class TetrahedraStiffness : public ConstrainedStiffness<TetrahedraStiffness<Number>, Number> {
  public:
   using Lane = Lanes<Number>;
   using Cells = Tetrahedra<Number>;
 
   TetrahedraStiffness(const ElasticSystem& system, double lambda)
-      : cells_(system.dof_handler, nullptr),
-        mu_(Number(system.mu)),
-        lambda_(Number(lambda)),
-        rows_(system.dof_handler.n_dofs()),
-        constrained_(system.constrained) {}
-
-  unsigned int m() const { return rows_; }
-  Number el(unsigned int, unsigned int) const { return Number(1); }  // required by PreconditionChebyshev
-  Vector<Number> vector() const { return Vector<Number>(rows_); }
-
-  void vmult(Vector<Number>& y, const Vector<Number>& x) const {
-    without_constrained(x, [&] { apply(y, x); });
-    for (const unsigned int i : constrained_) y.local_element(i) = x.local_element(i);
+      : cells_(system.dof_handler, nullptr), mu_(Number(system.mu)), lambda_(Number(lambda)) {
+    this->rows_ = system.dof_handler.n_dofs();
+    this->constrained_ = system.constrained;
   }
 
-  void clear_constrained(Vector<Number>& v) const {
-    for (const unsigned int i : constrained_) v.local_element(i) = 0;
-  }
-
-  // Calls f() while the constrained entries of x are zero.
-  template <typename F>
-  void without_constrained(const Vector<Number>& x, const F& f) const {
-    auto& x_ = const_cast<Vector<Number>&>(x);
-    saved_.clear();
-    for (const unsigned int i : constrained_) saved_.push_back(std::exchange(x_.local_element(i), Number(0)));
-    f();
-    for (std::size_t k = 0; k < constrained_.size(); ++k) x_.local_element(constrained_[k]) = saved_[k];
-  }
+  Vector<Number> vector() const { return Vector<Number>(this->rows_); }
 
   // The internal force of every degree of freedom.
   void apply(Vector<Number>& y, const Vector<Number>& x) const {
@@ -215,7 +188,7 @@ class TetrahedraStiffness : public dealii::Subscriptor {
   Vector<Number> inverse_diagonal() const {
     Vector<Number> diagonal = vector();
     for (const auto& batch : cells_.batches()) Cells::add(batch, diagonal_of(batch), diagonal);
-    for (const unsigned int i : constrained_) diagonal.local_element(i) = 1;
+    for (const unsigned int i : this->constrained_) diagonal.local_element(i) = 1;
     for (Number& d : diagonal) d = 1 / d;
     return diagonal;
   }
@@ -248,9 +221,6 @@ class TetrahedraStiffness : public dealii::Subscriptor {
 
   Cells cells_;
   Number mu_, lambda_;
-  unsigned int rows_;
-  std::vector<unsigned int> constrained_;
-  mutable std::vector<Number> saved_;
 };
 
 }  // namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE

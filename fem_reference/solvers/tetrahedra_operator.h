@@ -74,9 +74,9 @@ class TetrahedraOperator {
     for (double& m : inverse_mass_) m = 1 / m;
   }
 
-  MixedVector vector() const { return {stiffness_.vector(), Vector<double>(mixed_ ? pressure_.n_dofs() : 0)}; }
+  MixedField vector() const { return {stiffness_.vector(), Vector<double>(mixed_ ? pressure_.n_dofs() : 0)}; }
 
-  void apply(MixedVector& y, const MixedVector& x) const {
+  void apply(MixedField& y, const MixedField& x) const {
     if (!mixed_) return stiffness_.apply(y.u, x.u);
     y.u = 0;
     y.p = 0;
@@ -96,7 +96,7 @@ class TetrahedraOperator {
     }
   }
 
-  void vmult(MixedVector& y, const MixedVector& x) const {
+  void vmult(MixedField& y, const MixedField& x) const {
     stiffness_.without_constrained(x.u, [&] { apply(y, x); });
     stiffness_.clear_constrained(y.u);
   }
@@ -137,17 +137,16 @@ class TetrahedraOperator {
     y *= 1 / (1 / lambda_ + 0.5 / mu_);
   }
 
-  bool factorise(const MixedVector&) {
+  bool factorise(const MixedField&) {
     if (factors_) return false;
     factors_ = factored_stiffness(system_);
     return static_cast<bool>(factors_);
   }
 
-  CellPressures pressures(const MixedVector& x) const {
+  CellPressures pressures(const MixedField& x) const {
     CellPressures all;
-    std::vector<dealii::types::global_dof_index> p(4);
     for (const auto& cell : pressure_.active_cell_iterators()) {
-      cell->get_dof_indices(p);
+      const auto p = dofs_in(cell, pressure_);
       const double first = x.p(p[0]);
       all.push_back({first, x.p(p[1]) - first, x.p(p[2]) - first, x.p(p[3]) - first});
     }

@@ -55,7 +55,7 @@ class VCycle {
   using Level = Stiffness<degree, float>;
   using Smoother = dealii::PreconditionChebyshev<Level, Vector<float>>;
 
-  VCycle(const ElasticSystem& system, const Coefficients<float>& coefficients)
+  VCycle(const ElasticSystem& system, const ElasticCoefficients<float>& coefficients)
       : dof_handler_(system.dof_handler), below_(system.below) {
     const unsigned int n_levels = dof_handler_.get_triangulation().n_global_levels();
     constrained_dofs_.initialize(dof_handler_);

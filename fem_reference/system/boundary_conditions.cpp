@@ -68,8 +68,7 @@ void for_each_prescribed(const Cells& cells, const Body3& body, const std::vecto
 template <typename Values, typename Cell, typename Force>
 void add_integral(const Values& values, const Cell& cell, const Force& force, DofVector& load) {
   const auto& fe = cell->get_fe();
-  std::vector<dealii::types::global_dof_index> dofs(fe.n_dofs_per_cell());
-  cell->get_dof_indices(dofs);
+  const auto dofs = dofs_in(cell, cell->get_dof_handler());
   for (const unsigned int q : values.quadrature_point_indices()) {
     const Vec3 weighted = values.JxW(q) * force(q);
     for (unsigned int i = 0; i < dofs.size(); ++i)
@@ -175,7 +174,7 @@ void add_point_force(const dealii::DoFHandler<3>& dof_handler, const Body3& body
   const Location place = locate(body, point.at.transpose()).front();
   if (!place.answers || !to.takes(place.cell)) return;
   const auto& fe = dof_handler.get_fe();
-  const auto dofs = dofs_at(place, dof_handler);
+  const auto dofs = dofs_in(place.cell, dof_handler);
   for (unsigned int i = 0; i < dofs.size(); ++i)
     to.load[dofs[i]] += fe.shape_value(i, place.unit) * point.force[fe.system_to_component_index(i).first];
 }

@@ -63,15 +63,17 @@ constexpr int most_factored_for_thin_bodies = 100000;
 struct ElasticSystem {
   const Body3& body;
   const dealii::DoFHandler<3>& dof_handler;  ///< with level degrees of freedom, if solved matrix-free
-  std::vector<unsigned int> constrained;     ///< degrees of freedom with prescribed value, locally owned and ghost
-  std::vector<dealii::IndexSet> level_constrained;  ///< the same on every level; empty: solved with assembled matrices
   int degree;
   Form form;
-  double mu, lambda;  ///< [Pa]
-  double tolerance;   ///< relative residual
-  bool wide_vectors;  ///< use wide SIMD vectors where the processor has them
-  bool plain_gamg;    ///< assembled matrices: no level of linear elements
-  int most_factored;  ///< assembled matrices: largest number of rows for which linear elements are factored
+  double mu, lambda;                           ///< [Pa]
+  std::vector<unsigned int> constrained = {};  ///< degrees of freedom with prescribed value, locally owned and ghost
+  std::vector<dealii::IndexSet> level_constrained =
+      {};                     ///< the same on every level; empty: solved with assembled matrices
+  double tolerance = 1e-9;    ///< relative residual
+  bool wide_vectors = false;  ///< use wide SIMD vectors where the processor has them
+  bool plain_gamg = false;    ///< assembled matrices: no level of linear elements
+  int most_factored =
+      most_factored_rows;  ///< assembled matrices: largest number of rows for which linear elements are factored
   std::function<void(LevelVector& x, const LevelVector& r)> below =
       {};                          ///< coarse-grid correction of the coarsest level; empty: none
   std::string below_name = {};     ///< its method, for the report
@@ -94,9 +96,6 @@ struct ElasticAnswer {
   std::string method;
 };
 
-/// Solves for the unconstrained entries of `displacement`; its constrained entries hold the prescribed values.
-ElasticAnswer solve_elastic(const ElasticSystem& system, const DofVector& load, DofVector& displacement);
-
 /// Additional data for finite strain.
 struct FiniteProblem {
   Law law;
@@ -111,8 +110,13 @@ struct FiniteAnswer : ElasticAnswer {
   int newton_iterations = 0, load_steps = 0;
 };
 
-/// Newton's method, total Lagrangian, with dead loads.  If it fails, the result is that at the load reached.
-FiniteAnswer solve_finite(const ElasticSystem& system, const FiniteProblem& problem, const DofVector& load,
-                          DofVector& displacement);
+/// Solvers for the unconstrained entries of `displacement`, of one kind of operators.
+struct Solvers {
+  /// The constrained entries hold the prescribed values.
+  ElasticAnswer (*elastic)(const ElasticSystem& system, const DofVector& load, DofVector& displacement);
+  /// Newton's method, total Lagrangian, with dead loads.  If it fails, the result is that at the load reached.
+  FiniteAnswer (*finite)(const ElasticSystem& system, const FiniteProblem& problem, const DofVector& load,
+                         DofVector& displacement);
+};
 
 }  // namespace springproof::fem

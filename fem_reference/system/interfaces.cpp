@@ -15,12 +15,11 @@ struct CommonDof {
 
 std::map<dealii::types::global_dof_index, CommonDof> common_dofs(const dealii::DoFHandler<3>& dof_handler) {
   const auto& fe = dof_handler.get_fe();
-  std::vector<dealii::types::global_dof_index> dofs(fe.n_dofs_per_cell());
   std::vector<int> first(dof_handler.n_dofs(), -1);
   std::map<dealii::types::global_dof_index, CommonDof> common;
   for (const auto& cell : dof_handler.active_cell_iterators()) {
     const int own = cell->material_id();
-    cell->get_dof_indices(dofs);
+    const auto dofs = dofs_in(cell, dof_handler);
     for (unsigned int i = 0; i < dofs.size(); ++i) {
       int& known = first[dofs[i]];
       if (known < 0) known = own;
@@ -43,7 +42,6 @@ void add_internal_forces(const ElasticSystem& system, const ElasticAnswer& answe
   Eigen::MatrixXd linear(rule.size(), 4);  // CellPressures at the points
   for (unsigned int q = 0; q < rule.size(); ++q)
     linear.row(q) << 1, rule.point(q)[0], rule.point(q)[1], rule.point(q)[2];
-  std::vector<dealii::types::global_dof_index> dofs(fe.n_dofs_per_cell());
   double smallest = 1;
   CellShape shape;
   for (const auto& cell : system.dof_handler.active_cell_iterators()) {
@@ -51,7 +49,7 @@ void add_internal_forces(const ElasticSystem& system, const ElasticAnswer& answe
     const dealii::Triangulation<3>::cell_iterator here = cell;
     values.reinit(here);
     set_shape(values, shape);
-    cell->get_dof_indices(dofs);
+    const auto dofs = dofs_in(cell, system.dof_handler);
     CellVector x{Eigen::MatrixXd(shape.nodes(), 3), {}};
     shape.pressures.resize(shape.points(), 0);
     if (law.form == Form::mixed) {

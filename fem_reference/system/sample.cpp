@@ -20,7 +20,7 @@ NodalVectors displacement_at(const std::vector<Location>& places, const dealii::
   NodalVectors u = NodalVectors::Zero(places.size(), 3);
   for (std::size_t k = 0; k < places.size(); ++k) {
     if (!places[k].answers) continue;
-    const auto dofs = dofs_at(places[k], dof_handler);
+    const auto dofs = dofs_in(places[k].cell, dof_handler);
     for (unsigned int a = 0; a < scalar.n_dofs_per_cell(); ++a) {
       const double N = scalar.shape_value(a, places[k].unit);
       for (int c = 0; c < 3; ++c)
@@ -50,19 +50,14 @@ Eigen::Matrix3d linear_stress(const dealii::Tensor<2, 3>& h, double mu, double p
 }
 
 // F S F^T / det F
-Eigen::Matrix3d cauchy_stress(Law law, const Matrix3& F, double mu, double p) {
-  Eigen::Matrix3d second, deformation;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) deformation(i, j) = F[i][j];
-  const Voigt S = stress(law, mu, p, deformation.transpose() * deformation);
-  second << S[0], S[3], S[5], S[3], S[1], S[4], S[5], S[4], S[2];
-  return deformation * second * deformation.transpose() / determinant(F);
+Eigen::Matrix3d cauchy_stress(Law law, const Eigen::Matrix3d& F, double mu, double p) {
+  return F * tensor(stress(law, mu, p, F.transpose() * F)) * F.transpose() / F.determinant();
 }
 
-Matrix3 deformation_gradient(const dealii::Tensor<2, 3>& h) {
-  Matrix3 F;
+Eigen::Matrix3d deformation_gradient(const dealii::Tensor<2, 3>& h) {
+  Eigen::Matrix3d F;
   for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) F[i][j] = h[i][j] + (i == j);
+    for (int j = 0; j < 3; ++j) F(i, j) = h[i][j] + (i == j);
   return F;
 }
 
@@ -104,7 +99,7 @@ class CellStress {
     for (std::size_t k = 0; k < points_.size(); ++k) {
       const Location here{cell, points_[k]};
       if (law_) {
-        const Matrix3 F = deformation_gradient(gradients_[k]);
+        const Eigen::Matrix3d F = deformation_gradient(gradients_[k]);
         const double p = pressure_at(law, answer_.pressure, here, dilatation(*law_, F));
         stresses_[k] = cauchy_stress(*law_, F, law.mu, p);
       } else {
@@ -192,9 +187,8 @@ NodalSolution at_own_nodes(const ElasticSystem& system, std::optional<Law> law, 
   // Of a node, by its first degree of freedom and the material.
   std::map<std::pair<dealii::types::global_dof_index, dealii::types::material_id>, int> number;
   NodalSolution out;
-  std::vector<dealii::types::global_dof_index> dofs(fe.n_dofs_per_cell());
   for (const auto& cell : system.dof_handler.active_cell_iterators()) {
-    cell->get_dof_indices(dofs);
+    const auto dofs = dofs_in(cell, system.dof_handler);
     if (!system.laws.empty()) out.materials.push_back(cell->material_id());
     std::vector<int>& own = out.cells.emplace_back();
     for (unsigned int a = 0; a < units.size(); ++a)
@@ -209,7 +203,7 @@ NodalSolution at_own_nodes(const ElasticSystem& system, std::optional<Law> law, 
   out.stress = Stresses::Zero(nodes, 6);
   Eigen::VectorXd cells_at = Eigen::VectorXd::Zero(nodes);
   for (const auto& cell : system.dof_handler.active_cell_iterators()) {
-    cell->get_dof_indices(dofs);
+    const auto dofs = dofs_in(cell, system.dof_handler);
     const std::vector<Eigen::Matrix3d>& in_cell = stress.at_points(cell);
     for (unsigned int a = 0; a < units.size(); ++a) {
       const int n = out.cells[cell->active_cell_index()][a];
@@ -255,7 +249,7 @@ PointState state_at(const CellLaw& law, const dealii::Tensor<2, 3>& h, double p,
       for (int j = 0; j < 3; ++j) work += stress(i, j) * h[i][j];
     return {stress, work / 2};
   }
-  const Matrix3 F = deformation_gradient(h);
+  const Eigen::Matrix3d F = deformation_gradient(h);
   double energy = shear_energy(*law.law, law.mu, F);
   if (law.form != Form::mixed) {
     energy += dilatation_energy(*law.law, law.lambda, g);

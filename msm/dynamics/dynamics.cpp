@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "msm/algebra/fixed.h"
 #include "msm/dynamics/implicit_motion.h"
 #include "msm/dynamics/inertia.h"
 #include "msm/dynamics/lattice_motion.h"
@@ -35,8 +36,7 @@ NodalVectors velocity_before(const MassSpringModel& model, double density, const
   if (options.viscosity.acts()) options.viscosity.add_forces(model.network, there, v, f);
   const bool explicit_steps = options.integrator == Integrator::explicit_euler;
   const double dt = options.time_step.value();
-  for (Eigen::Index i = 0; i < v.size(); ++i)
-    if (bc.fixed[i]) v.data()[i] = 0;
+  clear_fixed(bc.fixed, v);
   v = mass_average(model.network, density, options).momenta(v, bc.fixed);
   for (Eigen::Index i = 0; i < v.size(); ++i)
     if (!bc.fixed[i] && explicit_steps)

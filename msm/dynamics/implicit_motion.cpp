@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "msm/algebra/dense.h"
+#include "msm/algebra/fixed.h"
 #include "msm/dynamics/time_step.h"
 #include "msm/laws/capabilities.h"
 
@@ -149,9 +150,7 @@ void ImplicitMotion::renew(const Formula& step, const NodalVectors& x1) {
 
 Eigen::VectorXd ImplicitMotion::correction(const Eigen::VectorXd& r) const {
   Eigen::VectorXd d;
-  const auto allowed = [&](const Eigen::VectorXd& change) {
-    return plane_ ? free_part(Eigen::Map<const NodalVectors>(change.data(), change.size() / 3, 3)) : change;
-  };
+  const auto allowed = [&](const Eigen::VectorXd& change) { return plane_ ? free_part(by_point(change)) : change; };
   if (factored()) {
     factors_->solve(r, d);
     return allowed(d / scale_);
@@ -173,8 +172,7 @@ NodalVectors ImplicitMotion::with_supports(NodalVectors x) const {
 }
 
 Eigen::VectorXd ImplicitMotion::free_part(NodalVectors v) const {
-  for (Eigen::Index i = 0; i < v.size(); ++i)
-    if (conditions_.fixed[i]) v.data()[i] = 0;
+  clear_fixed(conditions_.fixed, v);
   if (plane_) plane_->project(v);
   return Eigen::Map<const Eigen::VectorXd>(v.data(), v.size());
 }
@@ -238,7 +236,7 @@ void ImplicitMotion::iterate(const Formula& now, double enough, NodalVectors& x1
 void ImplicitMotion::newton_step(const Formula& now, double relative, NodalVectors& x1, Balance& b) {
   const double of_mass = now.a + options_.damping * now.rate;
   const Operator jacobian = [&](const Eigen::VectorXd& d, Eigen::VectorXd& y) {
-    const Eigen::Map<const NodalVectors> change(d.data(), x1.rows(), 3);
+    const auto change = by_point(d);
     const double t = difference * spacing_ / std::max(change.cwiseAbs().maxCoeff(), 1e-300);
     ++evaluations_;
     y = free_part(of_mass * (mass_.asDiagonal() * change) - (force(now, x1 + t * change) - b.force) / t);
@@ -249,7 +247,7 @@ void ImplicitMotion::newton_step(const Formula& now, double relative, NodalVecto
   const NodalVectors from = x1;
   const double before = b.unbalanced.norm();
   for (double t = 1;; t /= 2) {
-    x1 = from + t * Eigen::Map<const NodalVectors>(d.data(), from.rows(), 3);
+    x1 = from + t * by_point(d);
     b = balance(now, x1);
     if (b.unbalanced.norm() < before || t < 0.05) break;
   }

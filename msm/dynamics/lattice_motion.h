@@ -27,6 +27,7 @@ class LatticeMotion : public Motion {
     damping_ = damping;
   }
 
+  void set_state(const NodalVectors& x, const NodalVectors& v) override;
   /// Displacement [m], then velocity [m/s] of nodes begin <= n < end, six values per node.
   virtual void read(int begin, int end, double* values) const = 0;
   virtual void write(int begin, int end, const double* values) = 0;
@@ -42,6 +43,7 @@ class LatticeMotion : public Motion {
         density_(density),
         time_step_(options.time_step.value()),
         damping_(options.damping) {}
+  BoundaryConditions no_conditions() const;
 
   const Network& network_;
   double edge_, density_, time_step_, damping_;

@@ -19,10 +19,7 @@ class LatticeOnGpu : public LatticeMotion {
       : LatticeMotion(model, density, options), steps_(lattice_of(model)) {
     u_.assign(3 * std::size_t(box_.size), 0);
     v_ = u_;
-    BoundaryConditions none;
-    none.fixed.assign(3 * network_.nodes(), 0);
-    none.prescribed = none.external = NodalVectors::Zero(network_.nodes(), 3);
-    LatticeOnGpu::set_conditions(none);
+    LatticeOnGpu::set_conditions(no_conditions());
   }
 
   void set_conditions(const BoundaryConditions& conditions) override {
@@ -50,15 +47,6 @@ class LatticeOnGpu : public LatticeMotion {
   void move_supports() override {
     steps_.set(support_places_, support_values_);
     supports_wait_ = false;
-  }
-
-  void set_state(const NodalVectors& x, const NodalVectors& v) override {
-    for (int n = 0; n < network_.nodes(); ++n)
-      for (int d = 0; d < 3; ++d) {
-        u_[d * box_.size + place_[n]] = static_cast<Real>((x(n, axis_[d]) - network_.X(n, axis_[d])) / edge_);
-        v_[d * box_.size + place_[n]] = static_cast<Real>(v(n, axis_[d]) / edge_);
-      }
-    steps_.write(u_, v_);
   }
 
   void read(int begin, int end, double* values) const override {

@@ -38,10 +38,7 @@ class LatticeOnProcessor : public LatticeMotion {
     if (const MomentumDispersion* dispersion = dispersion_of(model)) make_dispersion(*dispersion);
     make_slabs();
     if (theta_ > 0) work_ = AlignedArray<Real>(workers_.count() * work_of_slab(), Real(0));
-    BoundaryConditions none;
-    none.fixed.assign(3 * network_.nodes(), 0);
-    none.prescribed = none.external = NodalVectors::Zero(network_.nodes(), 3);
-    LatticeOnProcessor::set_conditions(none);
+    LatticeOnProcessor::set_conditions(no_conditions());
   }
 
   void set_conditions(const BoundaryConditions& conditions) override {
@@ -70,14 +67,6 @@ class LatticeOnProcessor : public LatticeMotion {
   void move_supports() override {
     for (const Support& s : supports_) u_[s.component][s.slot] = s.value;
     supports_wait_ = false;
-  }
-
-  void set_state(const NodalVectors& x, const NodalVectors& v) override {
-    for (int n = 0; n < network_.nodes(); ++n)
-      for (int d = 0; d < 3; ++d) {
-        u_[d][layout_.slot[n]] = static_cast<Real>((x(n, layout_.axis[d]) - network_.X(n, layout_.axis[d])) / edge_);
-        v_[d][layout_.slot[n]] = static_cast<Real>(v(n, layout_.axis[d]) / edge_);
-      }
   }
 
   void read(int begin, int end, double* values) const override {

@@ -238,8 +238,7 @@ ForceNorms ListMotion<Real>::advance(long steps) {
 template <class Real>
 NodalVectors ListMotion<Real>::in_network_order(const std::vector<Padded<Real>>& v) const {
   NodalVectors out(network_.nodes(), 3);
-  for (std::size_t p = 0; p < v.size(); ++p)
-    for (int d = 0; d < 3; ++d) out(order_[p], d) = v[p].v[d];
+  by_node(order_, v, 1, out.data());
   return out;
 }
 

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "msm/algebra/fixed.h"
 #include "msm/algebra/lobpcg.h"
 #include "msm/algebra/noise.h"
 #include "msm/dynamics/terms/mass_average.h"
@@ -26,8 +27,6 @@ constexpr double mode_tolerance = 1e-6;    // residual; frequencies are then exa
 constexpr double inner_residual = 1e-2;    // of the preconditioning solve
 constexpr int inner_iterations = 100, outer_iterations = 60;
 
-using NodalMap = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>;
-
 /// Rigid motions that the supports leave, as columns over all unknowns; 0 where there is no equation.
 Eigen::MatrixXd left_motions(const std::vector<char>& fixed, const std::vector<char>& none, const NodalVectors& X) {
   const RigidMotions rigid{X};
@@ -43,11 +42,6 @@ Eigen::MatrixXd scattered(Eigen::Index rows, Eigen::Index columns) {
   Eigen::MatrixXd X(rows, columns);
   fill_with_noise(X.reshaped());
   return X;
-}
-
-void clear(const std::vector<char>& fixed, Eigen::VectorXd& v) {
-  for (std::size_t i = 0; i < fixed.size(); ++i)
-    if (fixed[i]) v[static_cast<Eigen::Index>(i)] = 0;
 }
 
 void compute(const MassSpringModel& model, const std::vector<char>& supported, double density, double theta, int count,
@@ -67,12 +61,12 @@ void compute(const MassSpringModel& model, const std::vector<char>& supported, d
   }
   const Operator K = [&](const Eigen::VectorXd& x, Eigen::VectorXd& y) {
     stiffness->multiply(x, y);
-    clear(fixed, y);
+    clear_fixed(fixed, y);
   };
   const Operator M = [&](const Eigen::VectorXd& x, Eigen::VectorXd& y) {
     y.resize(x.size());
-    Eigen::Map<NodalVectors>(y.data(), x.size() / 3, 3) = mass * NodalMap(x.data(), x.size() / 3, 3);
-    clear(fixed, y);
+    by_point(y) = mass * by_point(x);
+    clear_fixed(fixed, y);
   };
   const Operator solve = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
     if (children_interrupted()) throw std::runtime_error("interrupted");
@@ -100,7 +94,8 @@ void compute(const MassSpringModel& model, const std::vector<char>& supported, d
         fmt::format("{}: residual {:.2e} after {} iterations", modes.solver, found.residual, found.iterations);
   for (int j = 0; modes.ok && j < wanted; ++j) {
     modes.frequencies.push_back(std::sqrt(found.values[j]) / (2 * std::numbers::pi));
-    carry(network.cells.carried, modes.shapes.emplace_back(NodalMap(found.vectors.col(j).data(), network.X.rows(), 3)));
+    carry(network.cells.carried,
+          modes.shapes.emplace_back(Eigen::Map<const NodalVectors>(found.vectors.col(j).data(), network.X.rows(), 3)));
   }
 }
 

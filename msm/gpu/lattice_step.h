@@ -6,7 +6,7 @@
 
 #include "msm/gpu/gpu.h"
 #include "msm/gpu/sweep.h"
-#include "msm/kernels/compiled/cell_pressure.h"
+#include "msm/kernels/compiled/averaged_cells.h"
 
 namespace springproof::gpu {
 

@@ -5,7 +5,7 @@
 #pragma once
 
 #include "msm/gpu/backend.h"
-#include "msm/gpu/box.h"
+#include "msm/gpu/gpu.h"
 #include "msm/kernels/compiled/averaged_cells.h"
 
 namespace springproof::gpu {

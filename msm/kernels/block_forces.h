@@ -22,6 +22,23 @@ struct BlockPlan {
   long blocks_of_piece = 1;  ///< that take some microseconds together
 };
 
+/// Converts a vector of 3 n in the network's order, times `factor`, to one by place.
+template <class Real>
+void by_place(const std::vector<int>& order, const double* v, double factor, std::vector<Padded<Real>>& out) {
+  out.resize(order.size());
+  for (std::size_t p = 0; p < out.size(); ++p) {
+    const double* from = v + 3 * order[p];
+    out[p] = {{static_cast<Real>(factor * from[0]), static_cast<Real>(factor * from[1]),
+               static_cast<Real>(factor * from[2]), 0}};
+  }
+}
+/// The way back.
+template <class Real>
+void by_node(const std::vector<int>& order, const std::vector<Padded<Real>>& v, double factor, double* out) {
+  for (std::size_t p = 0; p < v.size(); ++p)
+    for (int d = 0; d < 3; ++d) out[3 * order[p] + d] = factor * v[p].v[d];
+}
+
 /// Internal forces of a model on nodes at their places.
 template <class Real>
 class BlockForces {

@@ -136,7 +136,7 @@ template <class Real>
 void CellForces<Real>::add_blocks(long begin, long end, const Padded<Real>* x, const Padded<Real>* s, Padded<Real>* f) {
   for (long first = begin, next; first < end; first = next) {
     for (next = first + 1; next < end && order_.material[next] == order_.material[first];) ++next;
-    add_cells(first, next, x, s, f);
+    kernels_->cell_list.forces(part_of_list(first, next), x, viscous_ ? s : nullptr, f);
   }
   add_anchors(begin, end, x, f);
   add_bonds(begin, end, x, f);
@@ -158,17 +158,6 @@ CellList<Real> CellForces<Real>::part_of_list(long begin, long end) {
     list.overstrains = overstrains_.data() + overstrain_count * kernels_->cell_list.cells * list.branch_count * begin;
   }
   return list;
-}
-
-template <class Real>
-void CellForces<Real>::add_cells(long begin, long end, const Padded<Real>* x, const Padded<Real>* s, Padded<Real>* f) {
-  const CellList<Real> list = part_of_list(begin, end);
-  if (relaxing())
-    kernels_->cell_list.relaxing_forces(list, x, viscous_ ? s : nullptr, f);
-  else if (viscous_)
-    kernels_->cell_list.viscous_forces(list, x, s, f);
-  else
-    kernels_->cell_list.forces(list, x, f);
 }
 
 template <class Real>
@@ -312,8 +301,7 @@ void CellForces<Real>::at(const NodalVectors& x, const NodalVectors& v, NodalVec
   }
   add(u.data(), s.data(), on.data(), false);
   f.resize(x.rows(), 3);
-  for (std::size_t p = 0; p < order.size(); ++p)
-    for (int d = 0; d < 3; ++d) f(order[p], d) = on[p].v[d];
+  by_node(order, on, 1, f.data());
 }
 
 template class CellForces<double>;

@@ -2,12 +2,30 @@
 #pragma once
 
 #include "msm/kernels/aligned_array.h"
-#include "msm/kernels/cell_order.h"
+#include "msm/kernels/block_forces.h"
 #include "msm/kernels/kernels.h"
 #include "msm/laws/laws.h"
 #include "problem/relaxation.h"
 
 namespace springproof {
+
+/// Cells row by row and layer by layer across the longest axis of the body, in blocks; nodes in the order in which the
+/// last of their cells comes, so that a sweep completes them in their order, a layer later.  Anchors and bonds are in
+/// blocks too.  The cells of a block are of one material, those of a layer one material after the other.
+struct CellOrder {
+  std::vector<int> cells;         ///< of the network; -1: the rest of a block
+  std::vector<int> material;      ///< of the cells of each block
+  std::vector<int> anchors;       ///< of the network
+  std::vector<int> first_anchor;  ///< per block, and one more
+  std::vector<int> bonds;         ///< of the network
+  std::vector<int> first_bond;    ///< per block, and one more
+  std::vector<int> place;         ///< of each node
+  BlockPlan plan;
+
+  /// @param network with cells
+  /// @param cells_of_block how many a kernel computes together
+  CellOrder(const Network& network, int cells_of_block);
+};
 
 /// Internal forces of a model of averaged springs, of one material or several, or measured cells, with anchors or
 /// without; keeps no reference to the model.  `x` are displacements. Real = double: equal to forces() (msm/laws/laws.h)
@@ -66,7 +84,6 @@ class CellForces : public BlockForces<Real> {
   void store_bonds(const Network& network);
   CellList<Real> part_of_list(long begin, long end);
   void place_carried(const Padded<Real>* x, const Padded<Real>* s);
-  void add_cells(long begin, long end, const Padded<Real>* x, const Padded<Real>* s, Padded<Real>* f);
   void add_anchors(long begin, long end, const Padded<Real>* x, Padded<Real>* f) const;
   void add_bonds(long begin, long end, const Padded<Real>* x, Padded<Real>* f) const;
 

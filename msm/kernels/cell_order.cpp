@@ -1,4 +1,4 @@
-#include "msm/kernels/cell_order.h"
+#include "msm/kernels/cell_forces.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,6 @@
 
 #include "msm/kernels/block_rows.h"
 #include "msm/kernels/cell_kernels.h"
-#include "msm/kernels/dense_kernels.h"
 #include "msm/kernels/instruction_set.h"
 #include "msm/kernels/lattice_kernels.h"
 #include "msm/kernels/list_kernels.h"

@@ -7,20 +7,6 @@
 #include "msm/laws/capabilities.h"
 
 namespace springproof {
-namespace {
-
-template <class Real>
-std::vector<Padded<Real>> zeros(const SpringBlocks& blocks) {
-  return std::vector<Padded<Real>>(blocks.order.size(), Padded<Real>{});
-}
-
-template <class Real>
-void by_place(const SpringBlocks& blocks, const NodalVectors& v, std::vector<Padded<Real>>& out) {
-  for (int p = 0; p < blocks.nodes(); ++p)
-    for (int d = 0; d < 3; ++d) out[p].v[d] = static_cast<Real>(v(blocks.order[p], d));
-}
-
-}  // namespace
 
 template <class Real>
 ListDispersionData<Real>::ListDispersionData(const MomentumDispersion& law, const Network& network,
@@ -65,7 +51,7 @@ template ListDispersionData<float>::ListDispersionData(const ListDispersionData<
 
 template <class Real>
 ListForces<Real>::ListForces(const MassSpringModel& model, InstructionSet set)
-    : kernels_(&kernels_of<Real>(set).list), blocks_(model.network), x_(zeros<Real>(blocks_)), f_(x_) {
+    : kernels_(&kernels_of<Real>(set).list), blocks_(model.network), x_(blocks_.order.size()), f_(x_) {
   if (!can(model, Capability::list_kernels))
     throw std::invalid_argument("list forces are of springs and momentum dispersion only");
   const Network& network = model.network;
@@ -100,12 +86,11 @@ void ListForces<Real>::add_blocks(long begin, long end, const Padded<Real>* x, c
 
 template <class Real>
 void ListForces<Real>::at(const NodalVectors& x, NodalVectors& f) {
-  by_place(blocks_, x, x_);
+  by_place(blocks_.order, x.data(), 1, x_);
   std::fill(f_.begin(), f_.end(), Padded<Real>{});
   add(x_.data(), nullptr, f_.data(), false);
   f.resize(x.rows(), 3);
-  for (int p = 0; p < blocks_.nodes(); ++p)
-    for (int d = 0; d < 3; ++d) f(blocks_.order[p], d) = f_[p].v[d];
+  by_node(blocks_.order, f_, 1, f.data());
 }
 
 template class ListForces<double>;

@@ -148,12 +148,9 @@ template <class Real>
 struct CellListKernels {
   int cells;  ///< of a block
   int lanes;  ///< of a vector
-  /// f += forces of the cells at displacements u [m].
-  void (*forces)(const CellList<Real>&, const Padded<Real>* u, Padded<Real>* f);
-  /// f += forces of springs and dashpots.  Velocities are s times the fourth number of u.
-  void (*viscous_forces)(const CellList<Real>&, const Padded<Real>* u, const Padded<Real>* s, Padded<Real>* f);
-  /// The same with branches, whose overstrains become those of the end of the step; null s: no dashpots.
-  void (*relaxing_forces)(const CellList<Real>&, const Padded<Real>* u, const Padded<Real>* s, Padded<Real>* f);
+  /// f += forces of the cells at displacements u [m], and of dashpots: velocities are s times the fourth number of u;
+  /// null s: no dashpots.  The branches' overstrains become those of the end of the step.
+  void (*forces)(const CellList<Real>&, const Padded<Real>* u, const Padded<Real>* s, Padded<Real>* f);
   /// stored += energies [J] of the branches, one of each, at displacements u at the end of a step.
   void (*branch_energies)(const CellList<Real>&, const Padded<Real>* u, double* stored);
 };

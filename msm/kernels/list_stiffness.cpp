@@ -1,35 +1,12 @@
 #include "msm/kernels/list_stiffness.h"
 
 #include <cmath>
-#include <numeric>
 #include <stdexcept>
 
+#include "meshes/lists.h"
 #include "msm/laws/capabilities.h"
 
 namespace springproof {
-
-template <class Real>
-void by_place(const SpringBlocks& blocks, const double* v, double factor, std::vector<Padded<Real>>& out) {
-  out.resize(blocks.order.size());
-  for (std::size_t p = 0; p < out.size(); ++p) {
-    const double* from = v + 3 * blocks.order[p];
-    out[p] = {{static_cast<Real>(factor * from[0]), static_cast<Real>(factor * from[1]),
-               static_cast<Real>(factor * from[2]), 0}};
-  }
-}
-
-template <class Real>
-void by_node(const SpringBlocks& blocks, const std::vector<Padded<Real>>& v, double factor, double* out) {
-  for (std::size_t p = 0; p < v.size(); ++p) {
-    double* to = out + 3 * blocks.order[p];
-    for (int d = 0; d < 3; ++d) to[d] = factor * v[p].v[d];
-  }
-}
-
-template void by_place<double>(const SpringBlocks&, const double*, double, std::vector<Padded<double>>&);
-template void by_place<float>(const SpringBlocks&, const double*, double, std::vector<Padded<float>>&);
-template void by_node<double>(const SpringBlocks&, const std::vector<Padded<double>>&, double, double*);
-template void by_node<float>(const SpringBlocks&, const std::vector<Padded<float>>&, double, double*);
 
 template <class Real>
 ListStiffness<Real>::ListStiffness(const MassSpringModel& model, std::shared_ptr<const SpringBlocks> blocks,
@@ -84,11 +61,11 @@ void ListStiffness<Real>::add(const Padded<Real>* u, Padded<Real>* y) const {
 
 template <class Real>
 void ListStiffness<Real>::multiply(const Eigen::VectorXd& u, Eigen::VectorXd& y) const {
-  by_place(*blocks_, u.data(), 1, u_);
+  by_place(blocks_->order, u.data(), 1, u_);
   y_.assign(u_.size(), Padded<Real>{});
   add(u_.data(), y_.data());
   y.resize(u.size());
-  by_node(*blocks_, y_, 1, y.data());
+  by_node(blocks_->order, y_, 1, y.data());
 }
 
 namespace {
@@ -99,30 +76,16 @@ struct Share {
   Vec3 in, out;
 };
 
-/// Entries that contain each place.
-struct EntriesOfPlaces {
-  std::vector<int> begin, entry;
-
-  explicit EntriesOfPlaces(const SpringBlocks& blocks)
-      : begin(blocks.order.size() + 1, 0), entry(2 * blocks.entries()) {
-    for (std::size_t e = 0; e < blocks.entries(); ++e) {
-      ++begin[blocks.i[e / 4] + 1];
-      ++begin[blocks.j[e] + 1];
-    }
-    std::partial_sum(begin.begin(), begin.end(), begin.begin());
-    std::vector<int> next(begin.begin(), begin.end() - 1);
-    for (int e = 0; e < static_cast<int>(blocks.entries()); ++e) {
-      entry[next[blocks.i[e / 4]]++] = e;
-      entry[next[blocks.j[e]]++] = e;
-    }
-  }
-};
-
 }  // namespace
 
 template <class Real>
 void ListStiffness<Real>::add_flow_blocks(std::vector<Eigen::Matrix3d>& blocks) const {
-  const EntriesOfPlaces at(*blocks_);
+  const Lists<int> entries(blocks.size(), [&](const auto& add) {
+    for (int e = 0; e < static_cast<int>(blocks_->entries()); ++e) {
+      add(blocks_->i[e / 4], e);
+      add(blocks_->j[e], e);
+    }
+  });
   const ListDispersionData<Real>& data = dispersion_.front();
   const auto sink = [&](int p) { return data.sink.empty() ? p : data.sink[p]; };
   std::vector<char> of_group(blocks.size(), 0);
@@ -142,8 +105,8 @@ void ListStiffness<Real>::add_flow_blocks(std::vector<Eigen::Matrix3d>& blocks) 
       known->in += in;
       known->out += out;
     };
-    for (int n = at.begin[p]; n < at.begin[p + 1]; ++n) {
-      const int e = at.entry[n], i = blocks_->i[e / 4], j = blocks_->j[e];
+    for (const int e : entries[p]) {
+      const int i = blocks_->i[e / 4], j = blocks_->j[e];
       const double sign = i == p ? -1 : 1;
       const Vec3 m(sign * m_[e].v[0], sign * m_[e].v[1], sign * m_[e].v[2]);
       add_share(sink(i), data.a_i[e] * m, data.c_i[e] * m);

@@ -50,12 +50,6 @@ class ListStiffness {
   mutable std::vector<Padded<Real>> u_, y_;
 };
 
-/// Converts vectors of 3 n in the network's order, times `factor`, to vectors by place, and back.
-template <class Real>
-void by_place(const SpringBlocks& blocks, const double* v, double factor, std::vector<Padded<Real>>& out);
-template <class Real>
-void by_node(const SpringBlocks& blocks, const std::vector<Padded<Real>>& v, double factor, double* out);
-
 extern template class ListStiffness<double>;
 extern template class ListStiffness<float>;
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "meshes/lists.h"
+
 namespace springproof {
 namespace {
 
@@ -33,28 +35,18 @@ struct Half {
 };
 
 /// Springs at each place, sorted by the place of the other node.
-struct Adjacency {
-  std::vector<int> begin;
-  std::vector<Half> halves;
-
-  Adjacency(const Network& network, const std::vector<int>& place)
-      : begin(place.size() + 1, 0), halves(2 * network.springs.size()) {
-    for (const Spring& s : network.springs) {
-      ++begin[place[s.i] + 1];
-      ++begin[place[s.j] + 1];
-    }
-    std::partial_sum(begin.begin(), begin.end(), begin.begin());
-    std::vector<int> next(begin.begin(), begin.end() - 1);
+Lists<Half> springs_at_places(const Network& network, const std::vector<int>& place) {
+  Lists<Half> at(place.size(), [&](const auto& add) {
     for (int s = 0; s < static_cast<int>(network.springs.size()); ++s) {
       const int i = place[network.springs[s].i], j = place[network.springs[s].j];
-      halves[next[i]++] = {j, s};
-      halves[next[j]++] = {i, s};
+      add(i, Half{j, s});
+      add(j, Half{i, s});
     }
-    for (std::size_t n = 0; n < place.size(); ++n)
-      std::sort(halves.begin() + begin[n], halves.begin() + begin[n + 1],
-                [](const Half& a, const Half& b) { return a.other < b.other; });
-  }
-};
+  });
+  for (std::size_t p = 0; p < place.size(); ++p)
+    std::sort(at[p].begin(), at[p].end(), [](const Half& a, const Half& b) { return a.other < b.other; });
+  return at;
+}
 
 }  // namespace
 
@@ -68,15 +60,15 @@ std::array<int, 3> axes_by_extent(const NodalVectors& X) {
 SpringBlocks::SpringBlocks(const Network& network) : order(spatial_order(network)) {
   std::vector<int> place(order.size());
   for (int p = 0; p < nodes(); ++p) place[order[p]] = p;
-  const Adjacency adjacency(network, place);
+  const Lists<Half> at = springs_at_places(network, place);
   std::vector<char> taken(network.springs.size(), 0);
   std::vector<Half> open;
   // A node takes its remaining springs in fours and leaves the rest to nodes after it, but must take those to nodes
   // before it.
   for (int p = 0; p < nodes(); ++p) {
     open.clear();
-    for (int h = adjacency.begin[p]; h < adjacency.begin[p + 1]; ++h)
-      if (!taken[adjacency.halves[h].spring]) open.push_back(adjacency.halves[h]);
+    for (const Half& half : at[p])
+      if (!taken[half.spring]) open.push_back(half);
     const auto must = static_cast<std::size_t>(
         std::count_if(open.begin(), open.end(), [&](const Half& half) { return half.other < p; }));
     const std::size_t full = open.size() / 4 * 4, takes = full >= must ? full : open.size();

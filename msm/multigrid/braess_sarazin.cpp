@@ -30,9 +30,20 @@ void SaddlePointLevel::bound_schur() {
   }
 }
 
-void SaddlePointLevel::find_thin_parts(const CellMatrix& cell) {
-  auto thin = std::make_unique<ThinParts>(K.level(), cell);
-  if (!thin->empty()) thin_ = std::move(thin);
+void SaddlePointLevel::restrict_to(SaddlePointLevel& below) {
+  const LatticeLevel& lattice = below.K.level();
+  below.f.setZero();
+  below.g.setZero();
+  restrict_field(lattice, K.kernels(), K.stride(), d.data(), below.f.data());
+  lattice.clear_fixed(below.f);
+  restrict_pressures(below);
+}
+
+void SaddlePointLevel::prolongate(const SaddlePointLevel& below) {
+  prolongate_field(below.K.level(), K.kernels(), below.u.data(), K.stride(), d.data());
+  K.level().clear_fixed(d);
+  u += d;
+  prolongate_pressures(below);
 }
 
 void SaddlePointLevel::residual() {

@@ -18,8 +18,8 @@ class SaddlePointLevel {
 
   void smooth(Smoothing when);  ///< (u, p) from (f, g), then again
   void residual();              ///< d = f - K u - B^T p, zero on fixed unknowns, and Bu = B u
-  virtual void restrict_to(SaddlePointLevel& below) = 0;
-  virtual void prolongate(const SaddlePointLevel& below) = 0;
+  void restrict_to(SaddlePointLevel& below);
+  void prolongate(const SaddlePointLevel& below);
 
   LatticeOperator<float> K;
   Eigen::VectorXf f, g, u, p;
@@ -32,8 +32,9 @@ class SaddlePointLevel {
   SaddlePointLevel(const LatticeLevel& level, const CellMatrix& cell, double gradient, Eigen::Index pressures,
                    double kappa);
   void bound_schur();  ///< to be called once compliance and the inverse diagonal of S are set
-  void find_thin_parts(const CellMatrix& cell);
 
+  virtual void restrict_pressures(SaddlePointLevel&) {}  ///< g of the level below, which is zero
+  virtual void prolongate_pressures(const SaddlePointLevel&) {}
   virtual void take_residual() = 0;  ///< d = f - K u - B^T p, Bu = B u
   /// d = D (f - K u - B^T p), r = B (u + d) - g - C p; `from_zero`: u = 0 and p = 0.
   virtual void predict(bool from_zero) = 0;
@@ -43,14 +44,14 @@ class SaddlePointLevel {
   Eigen::VectorXf inverse_diagonal_;        ///< D, 0 on fixed unknowns
   Eigen::VectorXf inverse_schur_diagonal_;  ///< 0: no such pressure
   Eigen::VectorXf r_, z_, q_;
+  std::unique_ptr<ThinParts> thin_;  ///< null: none
 
  private:
   void sweep(bool from_zero);
   void correct_thin_parts();
 
   int chebyshev_steps_;
-  double schur_bound_ = 1;           ///< largest eigenvalue of diag(S)^-1 S
-  std::unique_ptr<ThinParts> thin_;  ///< null: none
+  double schur_bound_ = 1;  ///< largest eigenvalue of diag(S)^-1 S
 };
 
 /// The system on a lattice, in double precision, and the cycle for it.  Displacements are 3 per node of the network,

@@ -45,21 +45,7 @@ class NodalPressures : public SaddlePointLevel {
     inverse_schur_diagonal_ = (volumes.compliance.array() > 0).select(1 / schur.array(), 0).cast<float>().matrix();
     y_ = u;
     bound_schur();
-    find_thin_parts(cell);
-  }
-
-  void restrict_to(SaddlePointLevel& below) override {
-    const LatticeLevel& lattice = below.K.level();
-    below.f.setZero();
-    below.g.setZero();
-    restrict_field(lattice, K.kernels(), K.stride(), d.data(), below.f.data());
-    lattice.clear_fixed(below.f);
-  }
-
-  void prolongate(const SaddlePointLevel& below) override {
-    prolongate_field(below.K.level(), K.kernels(), below.u.data(), K.stride(), d.data());
-    K.level().clear_fixed(d);
-    u += d;
+    thin_ = ThinParts::of(lattice, cell);
   }
 
  private:

@@ -29,27 +29,19 @@ class CellPressures : public SaddlePointLevel {
         inverse_schur_diagonal_[row.cell + i] = static_cast<float>(1 / (C + b * b * sum));
       }
     bound_schur();
-    if (!coarsest) find_thin_parts(cell.without_volume);
-  }
-
-  void restrict_to(SaddlePointLevel& below) override {
-    const LatticeLevel& lattice = below.K.level();
-    below.f.setZero();
-    restrict_field(lattice, K.kernels(), K.stride(), d.data(), below.f.data());
-    below.g.setZero();
-    const Eigen::VectorXf volumes = g - Bu + compliance.cwiseProduct(p);
-    for (long c = 0; c < K.level().cells(); ++c) below.g[lattice.parent[c]] += volumes[c];
-  }
-
-  void prolongate(const SaddlePointLevel& below) override {
-    const LatticeLevel& lattice = below.K.level();
-    prolongate_field(lattice, K.kernels(), below.u.data(), K.stride(), d.data());
-    K.level().clear_fixed(d);
-    u += d;
-    for (long c = 0; c < K.level().cells(); ++c) p[c] += below.p[lattice.parent[c]];
+    if (!coarsest) thin_ = ThinParts::of(lattice, cell.without_volume);
   }
 
  private:
+  void restrict_pressures(SaddlePointLevel& below) override {
+    const Eigen::VectorXf volumes = g - Bu + compliance.cwiseProduct(p);
+    for (long c = 0; c < K.level().cells(); ++c) below.g[below.K.level().parent[c]] += volumes[c];
+  }
+
+  void prolongate_pressures(const SaddlePointLevel& below) override {
+    for (long c = 0; c < K.level().cells(); ++c) p[c] += below.p[below.K.level().parent[c]];
+  }
+
   void take_residual() override {
     K.pass(u.data(), p.data(), Bu.data(), [&](int a, long begin, long n, const float* y) {
       const long at = a * K.stride() + begin;

@@ -99,7 +99,7 @@ Multigrid::Multigrid(LatticeLevels levels, const CellMatrix& cell_of_network, bo
     SmoothingLevel& l = *levels_.emplace_back(std::make_unique<SmoothingLevel>(level, here));
     if (levels_.size() == lattice_.levels.size()) break;
     l.bound_eigenvalues(largest_scaled_eigenvalue(here));
-    l.find_thin_parts(here);
+    l.thin = ThinParts::of(level, here);
   }
   factor_coarsest(assemble(lattice_.levels.back(), of_level(lattice_.levels.back()) / unit), lattice_, may_float,
                   coarsest_);
@@ -110,11 +110,6 @@ SmoothingLevel::SmoothingLevel(const LatticeLevel& level, const CellMatrix& cell
   inverse_diagonal = (d.array() > 0).select(1 / d.array(), 0).cast<float>().matrix();
   level.clear_fixed(inverse_diagonal);
   r = z = x = Eigen::VectorXf::Zero(3 * level.stride());
-}
-
-void SmoothingLevel::find_thin_parts(const CellMatrix& cell) {
-  thin = std::make_unique<ThinParts>(K.level(), cell);
-  if (thin->empty()) thin.reset();
 }
 
 /// Lanczos in the inner product of diag(K), from a pseudo-random vector.  The sum of the largest Ritz value and its

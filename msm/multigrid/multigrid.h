@@ -6,7 +6,6 @@
 
 #include "msm/algebra/direct_solver.h"
 #include "msm/algebra/krylov.h"
-#include "msm/multigrid/chebyshev.h"
 #include "msm/multigrid/lattice_operator.h"
 #include "msm/multigrid/thin_parts.h"
 #include "msm/multigrid/v_cycle.h"
@@ -37,7 +36,6 @@ struct SmoothingLevel {
 
   /// Estimates largest_eigenvalue by Lanczos steps, at most `at_most`.
   void bound_eigenvalues(double at_most);
-  void find_thin_parts(const CellMatrix& cell);
 
   LatticeOperator<float> K;
   Eigen::VectorXf inverse_diagonal;  ///< 0 on fixed unknowns

@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "msm/algebra/fixed.h"
 #include "msm/algebra/noise.h"
 #include "msm/kernels/list_stiffness.h"
 #include "msm/laws/capabilities.h"
-#include "msm/multigrid/chebyshev.h"
+#include "msm/multigrid/v_cycle.h"
 #include "msm/parameters/calibrate.h"
 #include "msm/topology/cubic_lattice.h"
 
@@ -19,6 +20,7 @@ constexpr double largest_kappa = 8;          // times G: above it the lattice's 
 constexpr double smallest_fill = 0.1;
 
 using Index = std::array<int, 3>;
+using Weights = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
 /// The auxiliary lattice: its cells contain all nodes of the network.
 struct Auxiliary {
@@ -75,37 +77,33 @@ Auxiliary auxiliary_lattice(const Network& above, double edge, bool aligned) {
   return aux;
 }
 
-/// Trilinear weights from the lattice to the network's nodes.
-Passage passage(const Network& above, const Auxiliary& aux) {
-  Passage level;
-  level.points = aux.network.nodes();
-  level.weight_begin = {0};
+/// Trilinear weights of the lattice's points, a row for each of the network's nodes.
+Weights trilinear_weights(const Network& above, const Auxiliary& aux) {
+  Weights weights(above.nodes(), aux.network.nodes());
+  weights.reserve(Eigen::VectorXi::Constant(above.nodes(), 8));
   for (int n = 0; n < above.nodes(); ++n) {
     const Hexahedron& cell = aux.network.cells.corners[aux.cell_of[n]];
     const Vec3 xi = (above.X.row(n) - aux.network.X.row(cell[0])).transpose() / aux.network.cells.edge;
     for (int c = 0; c < 8; ++c) {
       double weight = 1;
       for (int d = 0; d < 3; ++d) weight *= hexahedron_corners[c][d] ? xi[d] : 1 - xi[d];
-      if (weight < 1e-12) continue;
-      level.weight_point.push_back(cell[c]);
-      level.weight.push_back(weight);
+      if (weight >= 1e-12) weights.insert(n, cell[c]) = weight;
     }
-    level.weight_begin.push_back(static_cast<int>(level.weight_point.size()));
   }
-  return level;
+  weights.makeCompressed();
+  return weights;
 }
 
-/// Fixes the lattice unknowns at least half of whose weight acts on fixed unknowns.
-void hold(const std::vector<char>& fixed, Passage& level) {
-  Eigen::VectorXd held = Eigen::VectorXd::Zero(3 * level.points), all = held;
-  for (std::size_t n = 0; n + 1 < level.weight_begin.size(); ++n)
-    for (int e = level.weight_begin[n]; e < level.weight_begin[n + 1]; ++e)
-      for (int d = 0; d < 3; ++d) {
-        all[3 * level.weight_point[e] + d] += level.weight[e];
-        if (fixed[3 * n + d]) held[3 * level.weight_point[e] + d] += level.weight[e];
-      }
-  level.fixed.resize(3 * level.points);
-  for (int i = 0; i < 3 * level.points; ++i) level.fixed[i] = held[i] >= 0.5 * all[i];
+/// Lattice unknowns at least half of whose weight acts on fixed unknowns.
+std::vector<char> held_unknowns(const std::vector<char>& fixed, const Weights& weights) {
+  const Eigen::VectorXd of_fixed =
+      Eigen::Map<const Eigen::Matrix<char, Eigen::Dynamic, 1>>(fixed.data(), 3 * weights.rows()).cast<double>();
+  const NodalVectors held = weights.transpose() * by_point(of_fixed);
+  const Eigen::VectorXd all = weights.transpose() * Eigen::VectorXd::Ones(weights.rows());
+  std::vector<char> lattice_fixed;
+  for (Eigen::Index p = 0; p < all.size(); ++p)
+    for (int d = 0; d < 3; ++d) lattice_fixed.push_back(held(p, d) >= 0.5 * all[p]);
+  return lattice_fixed;
 }
 
 /// One HybMSS cell with the network's shear modulus and what dispersion adds to lambda.
@@ -172,7 +170,7 @@ class ListSmoother : public NetworkSmoother {
   void before(const Eigen::VectorXd& b, Eigen::VectorXd& r) override {
     const double largest = b.lpNorm<Eigen::Infinity>();
     scale_ = largest > 0 ? largest : 1;
-    by_place(*blocks_, b.data(), 1 / scale_, r_);
+    by_place(blocks_->order, b.data(), 1 / scale_, r_);
     clear(x_);
     clear(y_);
     for (int k = 1; k <= degree; ++k) {
@@ -182,11 +180,11 @@ class ListSmoother : public NetworkSmoother {
     for (std::size_t p = 0; p < r_.size(); ++p)
       for (int d = 0; d < 3; ++d) z_[p].v[d] = r_[p].v[d] - y_[p].v[d];
     r.resize(b.size());
-    by_node(*blocks_, z_, scale_, r.data());
+    by_node(blocks_->order, z_, scale_, r.data());
   }
 
   void after(const Eigen::VectorXd& correction, Eigen::VectorXd& x) override {
-    by_place(*blocks_, correction.data(), unit_ / scale_, z_);
+    by_place(blocks_->order, correction.data(), unit_ / scale_, z_);
     for (std::size_t p = 0; p < x_.size(); ++p)
       for (int d = 0; d < 3; ++d) x_[p].v[d] += z_[p].v[d];
     K_.add(z_.data(), y_.data());  // in addition to K z from before()
@@ -195,7 +193,7 @@ class ListSmoother : public NetworkSmoother {
       if (k < degree) K_.add(z_.data(), y_.data());
     }
     x.resize(correction.size());
-    by_node(*blocks_, x_, scale_ / unit_, x.data());
+    by_node(blocks_->order, x_, scale_ / unit_, x.data());
   }
 
  private:
@@ -214,7 +212,7 @@ class ListSmoother : public NetworkSmoother {
   }
 
   double power_estimate() {
-    by_place(*blocks_, rough(static_cast<Eigen::Index>(3 * z_.size())).data(), 1, r_);
+    by_place(blocks_->order, rough(static_cast<Eigen::Index>(3 * z_.size())).data(), 1, r_);
     clear(y_);
     smooth(ChebyshevStep(0.0, 1.0));
     double estimate = 1;
@@ -304,49 +302,28 @@ class AssembledSmoother : public NetworkSmoother {
 
 }  // namespace
 
-void Passage::prolongate(const Eigen::VectorXd& u_lattice, const std::vector<char>& node_fixed,
-                         Eigen::VectorXd& u) const {
-  const int nodes = static_cast<int>(weight_begin.size()) - 1;
-  u.setZero(3 * nodes);
-  for (int n = 0; n < nodes; ++n)
-    for (int e = weight_begin[n]; e < weight_begin[n + 1]; ++e)
-      u.segment<3>(3 * n) += weight[e] * u_lattice.segment<3>(3 * weight_point[e]);
-  for (std::size_t i = 0; i < node_fixed.size(); ++i)
-    if (node_fixed[i]) u[i] = 0;
-}
-
-void Passage::restrict_to(const Eigen::VectorXd& r, const std::vector<char>& node_fixed,
-                          Eigen::VectorXd& r_lattice) const {
-  const int nodes = static_cast<int>(weight_begin.size()) - 1;
-  r_lattice.setZero(3 * points);
-  for (int n = 0; n < nodes; ++n) {
-    Vec3 value = r.segment<3>(3 * n);
-    for (int d = 0; d < 3; ++d)
-      if (node_fixed[3 * n + d]) value[d] = 0;
-    for (int e = weight_begin[n]; e < weight_begin[n + 1]; ++e)
-      r_lattice.segment<3>(3 * weight_point[e]) += weight[e] * value;
-  }
-  for (std::size_t i = 0; i < fixed.size(); ++i)
-    if (fixed[i]) r_lattice[i] = 0;
-}
-
 NetworkMultigrid::NetworkMultigrid(const MassSpringModel& model, const std::vector<char>& fixed)
     : fixed_(fixed), smoother_(network_smoother(model, fixed)) {
   const Network& network = model.network;
   const double edge = network.cells.empty() ? auxiliary_spacings * std::cbrt(network.volume.sum() / network.nodes())
                                             : 2 * network.cells.edge;
   const Auxiliary aux = auxiliary_lattice(network, edge, network.cells.cut());
-  passage_ = passage(network, aux);
-  hold(fixed, passage_);
-  lattice_ = std::make_unique<Multigrid>(lattice_levels(aux.network, passage_.fixed, 900, aux.fill),
+  weights_ = trilinear_weights(network, aux);
+  lattice_fixed_ = held_unknowns(fixed, weights_);
+  lattice_ = std::make_unique<Multigrid>(lattice_levels(aux.network, lattice_fixed_, 900, aux.fill),
                                          auxiliary_cell(model, edge), true);
+  coarse_r_.resize(3 * weights_.cols());
+  correction_.resize(3 * weights_.rows());
 }
 
 void NetworkMultigrid::apply(const Eigen::VectorXd& b, Eigen::VectorXd& x) const {
   smoother_->before(b, residual_);
-  passage_.restrict_to(residual_, fixed_, coarse_r_);
+  clear_fixed(fixed_, residual_);
+  by_point(coarse_r_) = weights_.transpose() * by_point(residual_);
+  clear_fixed(lattice_fixed_, coarse_r_);
   lattice_->apply(coarse_r_, coarse_x_);
-  passage_.prolongate(coarse_x_, fixed_, correction_);
+  by_point(correction_) = weights_ * by_point(coarse_x_);
+  clear_fixed(fixed_, correction_);
   smoother_->after(correction_, x);
 }
 

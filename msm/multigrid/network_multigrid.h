@@ -29,20 +29,6 @@ class NetworkSmoother {
 /// Matrix-free, smoothing in single precision, if ListStiffness covers the model; else with the assembled tangent.
 std::unique_ptr<NetworkSmoother> network_smoother(const MassSpringModel& model, const std::vector<char>& fixed);
 
-/// Transfer between a lattice and the nodes of a network in its cells.
-struct Passage {
-  int points = 0;                 ///< of the lattice
-  std::vector<char> fixed;        ///< per unknown 3 * point + axis
-  std::vector<int> weight_begin;  ///< for each node, where its row starts; then the end
-  std::vector<int> weight_point;
-  std::vector<double> weight;  ///< trilinear
-
-  /// u = P u_lattice (fixed unknowns of either left out).
-  void prolongate(const Eigen::VectorXd& u_lattice, const std::vector<char>& node_fixed, Eigen::VectorXd& u) const;
-  /// r_lattice = P^T r.
-  void restrict_to(const Eigen::VectorXd& r, const std::vector<char>& node_fixed, Eigen::VectorXd& r_lattice) const;
-};
-
 /// Symmetric cycle for the rest state of a conservative model: smoothing on the network itself before and after one
 /// V-cycle of a lattice that fills the same body, with cells of 1.75 mean node distances (lattices of cells: two
 /// edges), with the network's affine shear modulus and the bulk modulus that momentum dispersion adds.
@@ -59,7 +45,8 @@ class NetworkMultigrid {
  private:
   std::vector<char> fixed_;
   std::unique_ptr<NetworkSmoother> smoother_;
-  Passage passage_;  ///< from the auxiliary lattice to the network
+  Eigen::SparseMatrix<double, Eigen::RowMajor> weights_;  ///< of the auxiliary lattice's points, per node
+  std::vector<char> lattice_fixed_;
   std::unique_ptr<Multigrid> lattice_;
   mutable Eigen::VectorXd residual_, coarse_r_, coarse_x_, correction_;
 };

@@ -4,6 +4,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "meshes/lists.h"
 #include "msm/laws/capabilities.h"
 
 namespace springproof {
@@ -51,28 +52,18 @@ struct RowEntry {
 };
 
 /// Rows of B, each as a list of the contributions of springs.
-struct Rows {
-  std::vector<long> begin;
-  std::vector<RowEntry> entries;
-
-  Rows(const NodalVolumes& volumes, long points) : begin(points + 1, 0) {
-    std::vector<long> sink(points);
-    for (long p = 0; p < points; ++p) sink[p] = p;
-    for (const auto& [member, of] : volumes.members) sink[member] = of;
-    const auto each_end = [&](const auto& visit) {
-      for (const SpringRun& run : volumes.runs)
-        for (int s = 0; s < run.length; ++s) {
-          visit(sink[run.i + s], RowEntry{run.i + s, run.j + s, run.direction, volumes.weight_i[run.spring + s]});
-          visit(sink[run.j + s], RowEntry{run.i + s, run.j + s, run.direction, volumes.weight_j[run.spring + s]});
-        }
-    };
-    each_end([&](long row, const RowEntry&) { ++begin[row + 1]; });
-    std::partial_sum(begin.begin(), begin.end(), begin.begin());
-    entries.resize(begin.back());
-    std::vector<long> next(begin.begin(), begin.end() - 1);
-    each_end([&](long row, const RowEntry& entry) { entries[next[row]++] = entry; });
-  }
-};
+Lists<RowEntry> rows_of(const NodalVolumes& volumes, long points) {
+  std::vector<long> sink(points);
+  std::iota(sink.begin(), sink.end(), 0);
+  for (const auto& [member, of] : volumes.members) sink[member] = of;
+  return Lists<RowEntry>(points, [&](const auto& add) {
+    for (const SpringRun& run : volumes.runs)
+      for (int s = 0; s < run.length; ++s) {
+        add(sink[run.i + s], RowEntry{run.i + s, run.j + s, run.direction, volumes.weight_i[run.spring + s]});
+        add(sink[run.j + s], RowEntry{run.i + s, run.j + s, run.direction, volumes.weight_j[run.spring + s]});
+      }
+  });
+}
 
 }  // namespace
 
@@ -117,19 +108,18 @@ NodalVolumes::NodalVolumes(const MassSpringModel& model, const LatticeLevels& la
 }
 
 Eigen::VectorXd NodalVolumes::schur_diagonal(const LatticeLevel& level, const Eigen::VectorXf& D) const {
-  const Rows rows(*this, level.points());
+  const Lists<RowEntry> rows = rows_of(*this, level.points());
   const long stride = level.stride();
   Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(stride);
   std::vector<Vec3> row(level.points(), Vec3::Zero());
   for (long p = 0; p < level.points(); ++p) {
-    for (long e = rows.begin[p]; e < rows.begin[p + 1]; ++e) {
-      const RowEntry& entry = rows.entries[e];
+    for (const RowEntry& entry : rows[p]) {
       const Vec3 w = entry.weight * Eigen::Map<const Vec3>(&directions[3 * entry.direction]);
       row[entry.j] += w;
       row[entry.i] -= w;
     }
-    for (long e = rows.begin[p]; e < rows.begin[p + 1]; ++e)
-      for (const long point : {rows.entries[e].i, rows.entries[e].j}) {
+    for (const RowEntry& entry : rows[p])
+      for (const long point : {entry.i, entry.j}) {
         for (int a = 0; a < 3; ++a) diagonal[p] += D[a * stride + point] * row[point][a] * row[point][a];
         row[point].setZero();  // counted
       }

@@ -23,36 +23,27 @@ struct Marks {
 
   char& at(int i, int j, int k) { return mark[(std::size_t(k) * size[1] + j) * size[0] + i]; }
 
-  /// Along one axis: a mark becomes the least (erosion) or largest (dilation) of those from `low` to `high` away; none
-  /// beyond the box.
+  /// Along each axis in turn a mark becomes the least (erosion) or largest (dilation) of those from `low` <= 0 to
+  /// `high` >= 0 away; none beyond the box.
   template <class Choose>
-  void filter(int axis, int low, int high, Choose choose) {
-    const std::size_t step = axis == 0 ? 1 : axis == 1 ? size[0] : std::size_t(size[0]) * size[1];
-    std::vector<char> line(size[axis]);
-    for (std::size_t start = 0; start < mark.size(); ++start) {
-      if ((start / step) % size[axis] != 0) continue;
-      for (int i = 0; i < size[axis]; ++i) {
-        char value = choose.start;
-        for (int d = low; d <= high; ++d)
-          value = choose(value, i + d >= 0 && i + d < size[axis] ? mark[start + (i + d) * step] : char(0));
-        line[i] = value;
+  void filter(int low, int high, Choose choose) {
+    for (std::size_t axis = 0, step = 1; axis < 3; step *= size[axis++]) {
+      std::vector<char> line(size[axis]);
+      for (std::size_t start = 0; start < mark.size(); ++start) {
+        if ((start / step) % size[axis] != 0) continue;
+        for (int i = 0; i < size[axis]; ++i) {
+          line[i] = mark[start + i * step];
+          for (int d = low; d <= high; ++d)
+            line[i] = choose(line[i], i + d >= 0 && i + d < size[axis] ? mark[start + (i + d) * step] : char(0));
+        }
+        for (int i = 0; i < size[axis]; ++i) mark[start + i * step] = line[i];
       }
-      for (int i = 0; i < size[axis]; ++i) mark[start + i * step] = line[i];
     }
   }
 };
 
-struct Least {
-  char start = 1;
-  char operator()(char a, char b) const { return std::min(a, b); }
-};
-struct Largest {
-  char start = 0;
-  char operator()(char a, char b) const { return std::max(a, b); }
-};
-
 void dilate(Marks& marks, int by) {
-  for (int axis = 0; axis < 3; ++axis) marks.filter(axis, -by, by, Largest{});
+  marks.filter(-by, by, [](char a, char b) { return std::max(a, b); });
 }
 
 /// The cells of thin parts; no marks if there are none.
@@ -60,13 +51,11 @@ Marks thin_cells(const LatticeLevel& level) {
   const Index& side = level.cells_per_side;
   const bool whole_box = level.cells() == long(side[0]) * side[1] * side[2];
   if (whole_box && *std::min_element(side.begin(), side.end()) >= thickness) return {};
-  Marks body{
-      level.cells_per_side,
-      std::vector<char>(std::size_t(level.cells_per_side[0]) * level.cells_per_side[1] * level.cells_per_side[2], 0)};
+  Marks body{side, std::vector<char>(std::size_t(side[0]) * side[1] * side[2], 0)};
   for (const Index& c : level.cell_index) body.at(c[0], c[1], c[2]) = 1;
   Marks bulk = body;
-  for (int axis = 0; axis < 3; ++axis) bulk.filter(axis, 0, thickness - 1, Least{});
-  for (int axis = 0; axis < 3; ++axis) bulk.filter(axis, 1 - thickness, 0, Largest{});
+  bulk.filter(0, thickness - 1, [](char a, char b) { return std::min(a, b); });
+  bulk.filter(1 - thickness, 0, [](char a, char b) { return std::max(a, b); });
   dilate(bulk, reach);
   Marks thin = body;
   std::size_t count = 0;
@@ -105,14 +94,16 @@ struct CellMotions {
 
 }  // namespace
 
-ThinParts::ThinParts(const LatticeLevel& level, const CellMatrix& cell) : stride_(level.stride()) {
-  const std::vector<int> number = find_points(level);
-  if (points_.empty()) return;
-  form_blocks(level);
-  take_rows(level, number);
-  K_ = std::make_unique<LatticeOperator<float>>(*rows_, cell);
-  factor(number, level.edge_ratio * cell);
-  residual_.resize(3 * stride_);
+std::unique_ptr<ThinParts> ThinParts::of(const LatticeLevel& level, const CellMatrix& cell) {
+  std::unique_ptr<ThinParts> thin(new ThinParts(level.stride()));
+  const std::vector<int> number = thin->find_points(level);
+  if (thin->points_.empty()) return nullptr;
+  thin->form_blocks(level);
+  thin->take_rows(level, number);
+  thin->K_ = std::make_unique<LatticeOperator<float>>(*thin->rows_, cell);
+  thin->factor(number, level.edge_ratio * cell);
+  thin->residual_.resize(3 * thin->stride_);
+  return thin;
 }
 
 /// The corners of thin cells; returns the number in points_ of each point of the level, -1: none.

@@ -13,11 +13,8 @@ namespace springproof {
 /// than four cells thick and some way beyond.  Bulky bodies have none.
 class ThinParts {
  public:
-  /// `level` with its cell_index and point_index, `cell` in the level's axes.
-  ThinParts(const LatticeLevel& level, const CellMatrix& cell);
-
-  bool empty() const { return points_.empty(); }
-  int blocks() const { return static_cast<int>(blocks_); }
+  /// Null: there are none.  `level` with its cell_index and point_index, `cell` in the level's axes.
+  static std::unique_ptr<ThinParts> of(const LatticeLevel& level, const CellMatrix& cell);
 
   /// z += Z (Z^T K Z)^-1 Z^T (r - K z), nodal fields of the level.
   void correct(const float* r, float* z);
@@ -30,6 +27,7 @@ class ThinParts {
     bool free[3] = {true, true, true};
   };
 
+  explicit ThinParts(long stride) : stride_(stride) {}
   std::vector<int> find_points(const LatticeLevel& level);
   void form_blocks(const LatticeLevel& level);
   void take_rows(const LatticeLevel& level, const std::vector<int>& number);

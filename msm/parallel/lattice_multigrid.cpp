@@ -1,4 +1,4 @@
-#include "msm/parallel/lattice_multigrid.h"
+#include "msm/parallel/lattice_transfers.h"
 
 #include <memory>
 

@@ -28,8 +28,8 @@ Weights weights_of_points(const CutLevel& fine, const CutLevel& coarse) {
   Weights weights(fine.point.size());
   for (std::size_t i = 0; i < weights.size(); ++i) {
     std::map<int, double> sum;
-    for (int e = fine.weight_begin[i]; e < fine.weight_begin[i + 1]; ++e)
-      for_each_carrier(carriers, fine.weight_point[e], [&](int p, double w) { sum[p] += w * fine.weight[e]; });
+    for (decltype(fine.weights)::InnerIterator of(fine.weights, static_cast<Eigen::Index>(i)); of; ++of)
+      for_each_carrier(carriers, static_cast<int>(of.col()), [&](int p, double w) { sum[p] += w * of.value(); });
     weights[i].assign(sum.begin(), sum.end());
   }
   return weights;

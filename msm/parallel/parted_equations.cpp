@@ -4,8 +4,6 @@
 #include <cstring>
 #include <numeric>
 
-#include "msm/parallel/lattice_multigrid.h"
-
 namespace springproof {
 namespace {
 

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "problem/system/owned.h"
+
 namespace springproof {
 
 /// A failure of PETSc, on one process perhaps, which the others wait for: ends the program.
@@ -37,23 +39,6 @@ inline int size_of(MPI_Comm communicator) {
   return size;
 }
 
-/// Owner of a PETSc object.
-template <class Object, PetscErrorCode (*destroy)(Object*)>
-class Owned {
- public:
-  Owned() = default;
-  Owned(Owned&& other) noexcept : object_(std::exchange(other.object_, nullptr)) {}
-  Owned& operator=(Owned&& other) noexcept {
-    std::swap(object_, other.object_);
-    return *this;
-  }
-  ~Owned() { destroy(&object_); }
-  operator Object() const { return object_; }
-  Object* operator&() { return &object_; }
-
- private:
-  Object object_ = nullptr;
-};
 using PetscMatrix = Owned<Mat, MatDestroy>;
 using PetscVector = Owned<Vec, VecDestroy>;
 using PetscSolver = Owned<KSP, KSPDestroy>;

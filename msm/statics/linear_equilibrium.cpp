@@ -5,6 +5,7 @@
 
 #include "meshes/volume.h"
 #include "msm/algebra/direct_solver.h"
+#include "msm/algebra/fixed.h"
 #include "msm/parameters/calibrate.h"
 #include "msm/statics/equilibrium.h"
 #include "msm/statics/mixed_form.h"
@@ -20,7 +21,7 @@ constexpr long lattice_cholesky_limit = 1000;  // free unknowns; above it multig
 // slow near nu = 1/2, but thin shells of two cells across, in which the mixed cycle stands still, take some 700.
 constexpr long judge_limit = 20000;
 
-NodalVectors nodal(const Eigen::VectorXd& v) { return Eigen::Map<const NodalVectors>(v.data(), v.size() / 3, 3); }
+NodalVectors nodal(const Eigen::VectorXd& v) { return by_point(v); }
 
 /// The linear problem: u = prescribed + du, du zero on fixed unknowns.
 struct LinearProblem {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "msm/algebra/fixed.h"
 #include "msm/parameters/calibrate.h"
 #include "msm/statics/mixed_form.h"
 #include "problem/system/progress.h"
@@ -195,7 +196,7 @@ bool MixedNewton::step(const BoundaryConditions& bc, double tolerance, int max_i
     }
     const MixedVector correction = solve(at, r, h, std::clamp(1e-2 * relative, 1e-8, 1e-3));
     moved += correction.u;
-    x += Eigen::Map<const NodalVectors>(moved.data(), x.rows(), 3);
+    x += by_point(moved);
     p_ += correction.p;
   }
   return false;

@@ -7,6 +7,7 @@
 
 #include "meshes/volume.h"
 #include "msm/algebra/direct_solver.h"
+#include "msm/algebra/fixed.h"
 #include "msm/algebra/noise.h"
 #include "msm/laws/capabilities.h"
 #include "msm/statics/equilibrium.h"
@@ -47,8 +48,7 @@ SoftestMotion softest_motion(const MassSpringModel& model, const StiffnessSolver
   const Tangent rest = tangent(model, model.network.X);
   Eigen::VectorXd u(static_cast<Eigen::Index>(fixed.size())), Ku, Ru;
   fill_with_noise(u);
-  for (std::size_t i = 0; i < fixed.size(); ++i)
-    if (fixed[i]) u[static_cast<Eigen::Index>(i)] = 0;
+  clear_fixed(fixed, u);
   double stiffness = std::numeric_limits<double>::infinity();
   for (int i = 0; i < most_iterations; ++i) {
     rest.multiply(u, Ru);
@@ -60,7 +60,7 @@ SoftestMotion softest_motion(const MassSpringModel& model, const StiffnessSolver
     const double before = std::exchange(stiffness, u.dot(Ku) / u.dot(Ru));
     if (std::abs(stiffness - before) < settled * stiffness) break;
   }
-  return {stiffness, alternation_of(model.network, Eigen::Map<const NodalVectors>(u.data(), u.size() / 3, 3))};
+  return {stiffness, alternation_of(model.network, by_point(u))};
 }
 
 constexpr long dispersive_limit = 4000;  // the factors of momentum dispersion are several times as large
@@ -134,7 +134,7 @@ struct Newton {
     K->multiply(flat(du), Kdu);
     residual(x, bc.external, r);
     solve(r - Kdu, 1e-3, correction);
-    return x + du + Eigen::Map<const NodalVectors>(correction.data(), x.rows(), 3);
+    return x + du + by_point(correction);
   }
 
   /// Moves x along du by the largest of 1, 1/2, 1/4 ... that lowers the potential (or the residual, at round-off and
@@ -145,7 +145,7 @@ struct Newton {
     const bool has_potential = can(model, Capability::energy);
     const double noise = 1e-12 * (std::abs(start) + std::abs(slope));
     for (double t = 1; t > 1e-4; t /= 2) {
-      const NodalVectors trial = x + t * Eigen::Map<const NodalVectors>(du.data(), x.rows(), 3);
+      const NodalVectors trial = x + t * by_point(du);
       const double now = potential(trial, external);
       Eigen::VectorXd ignored;
       const bool lower = has_potential && now <= start + 1e-4 * t * slope;

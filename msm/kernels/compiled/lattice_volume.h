@@ -1,7 +1,7 @@
 // Volume correction of a row of cells.  For the lattice kernels only.
 #pragma once
 
-#include "msm/kernels/compiled/cell_pressure.h"
+#include "msm/kernels/compiled/averaged_cells.h"
 #include "msm/kernels/compiled/lattice_rows.h"
 
 namespace springproof::SPRINGPROOF_KERNEL_NAMESPACE {

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "meshes/united_numbers.h"
+#include "msm/algebra/fixed.h"
 
 namespace springproof {
 namespace {
@@ -107,17 +108,17 @@ void add_parents(UnitedNumbers family, CutLevel& fine, CutLevel& coarse) {
 
 /// How the points of a level follow those of the coarser one.
 void set_weights(const std::vector<std::vector<int>>& at_point, const CutLevel& coarse, CutLevel& fine) {
-  fine.weight_begin = {0};
+  const auto points = static_cast<Eigen::Index>(fine.point.size());
+  fine.weights.resize(points, static_cast<Eigen::Index>(coarse.point.size()));
+  fine.weights.reserve(Eigen::VectorXi::Constant(points, 8));
   for (std::size_t p = 0; p < fine.point.size(); ++p) {
     const int c = fine.parent[at_point[p].front()];
     for (int n = 0; n < 8; ++n) {
       const double w = weight_at(coarse.cubes[c], n, fine.point[p]);
-      if (w <= 0) continue;
-      fine.weight_point.push_back(coarse.corners[c][n]);
-      fine.weight.push_back(static_cast<float>(w));
+      if (w > 0) fine.weights.insert(static_cast<Eigen::Index>(p), coarse.corners[c][n]) = static_cast<float>(w);
     }
-    fine.weight_begin.push_back(static_cast<int>(fine.weight.size()));
   }
+  fine.weights.makeCompressed();
 }
 
 /// A mean over the corners of a cell of a level as one over those of its parent.
@@ -241,18 +242,13 @@ void CutLevel::relax_anchored(std::size_t c, const float* b, float* x) const {
 }
 
 void CutLevel::restrict_to(const Eigen::VectorXf& r, const CutLevel& next, Eigen::VectorXf& out) const {
-  for (std::size_t i = 0; i < point.size(); ++i)
-    for (int e = weight_begin[i]; e < weight_begin[i + 1]; ++e)
-      for (int a = 0; a < 3; ++a) out[3 * weight_point[e] + a] += weight[e] * r[static_cast<Eigen::Index>(3 * i) + a];
+  by_point(out).noalias() += weights.transpose() * by_point(r);
   hand_back(next.carried, out);
 }
 
 void CutLevel::prolongate(Eigen::VectorXf& coarse, const CutLevel& next, Eigen::VectorXf& u) const {
   carry(next.carried, coarse);
-  for (std::size_t i = 0; i < point.size(); ++i)
-    for (int e = weight_begin[i]; e < weight_begin[i + 1]; ++e)
-      for (int a = 0; a < 3; ++a)
-        u[static_cast<Eigen::Index>(3 * i) + a] += weight[e] * coarse[3 * weight_point[e] + a];
+  by_point(u).noalias() += weights * by_point(coarse);
 }
 
 AnchoredNodes::AnchoredNodes(const Network& network, std::vector<char> fixed_unknowns)

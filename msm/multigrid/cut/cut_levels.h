@@ -23,9 +23,8 @@ struct CutLevel {
   std::vector<InterfaceBond> bonds;       ///< on the corners of two cells
 
   // Transfer to the coarser level; empty on the coarsest.
-  std::vector<int> parent;                      ///< cell of the coarser level that contains each cell
-  std::vector<int> weight_begin, weight_point;  ///< per point, of the coarser level's points
-  std::vector<float> weight;
+  std::vector<int> parent;                              ///< cell of the coarser level that contains each cell
+  Eigen::SparseMatrix<float, Eigen::RowMajor> weights;  ///< of the coarser level's points, a row for each point
 
   /// Points that move the corners of a cell with anchors, or of two with bonds, which are stiffer than others: they are
   /// relaxed together.

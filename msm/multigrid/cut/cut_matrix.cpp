@@ -3,8 +3,8 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <map>
-#include <numeric>
 
+#include "meshes/lists.h"
 #include "msm/multigrid/cut/cut_levels.h"
 
 namespace springproof {
@@ -12,31 +12,17 @@ namespace {
 
 using CellStiffnessMatrix = Eigen::Matrix<double, 24, 24>;
 
-/// Lists of numbers, one after the other.
-struct Lists {
-  std::vector<int> begin, value;
-};
-
 /// The cells that move with each point, by ascending number.
-Lists cells_at_points(const CutLevel& level, const Carriers& carriers) {
-  Lists at;
-  std::vector<int> last(level.point.size(), -1);
-  const auto for_each = [&](const auto& act) {
-    std::fill(last.begin(), last.end(), -1);
+Lists<int> cells_at_points(const CutLevel& level, const Carriers& carriers) {
+  return Lists<int>(level.point.size(), [&](const auto& add) {
+    std::vector<int> last(level.point.size(), -1);
     for (int c = 0; c < static_cast<int>(level.corners.size()); ++c)
       for (const int q : level.corners[c])
         for_each_carrier(carriers, q, [&](int p, double) {
-          if (last[p] != c) act(p, c);
+          if (last[p] != c) add(p, c);
           last[p] = c;
         });
-  };
-  at.begin.assign(level.point.size() + 1, 0);
-  for_each([&](int p, int) { ++at.begin[p + 1]; });
-  std::partial_sum(at.begin.begin(), at.begin.end(), at.begin.begin());
-  at.value.resize(at.begin.back());
-  std::vector<int> next(at.begin.begin(), at.begin.end() - 1);
-  for_each([&](int p, int c) { at.value[next[p]++] = c; });
-  return at;
+  });
 }
 
 /// Points that a bond couples with each point.
@@ -76,18 +62,16 @@ CutMatrix<Real>::CutMatrix(const StiffnessOfCells& cells, double unit, const Cut
   const int points = rows();
   for (int n = 0; n < points; ++n) row_[point_[n]] = n;
   const Carriers carriers = carriers_of(points, level.carried);
-  const Lists at = cells_at_points(level, carriers);
+  const Lists<int> at = cells_at_points(level, carriers);
   std::vector<char> own(points, 0), apart(points, 0);
   for (const Anchor& a : level.anchors)
     for (const int q : a.corners) apart[q] = 1;
   const std::vector<std::vector<int>> bonded = bonded_points(level, carriers);
   const auto is_inside = [&](int p) {  // of eight full cells of one size
-    if (!cells.full_alike || apart[p] || !bonded[p].empty() || at.begin[p + 1] - at.begin[p] != 8) return false;
-    for (int e = at.begin[p]; e < at.begin[p + 1]; ++e) {
-      const int c = at.value[e];
-      if (level.filled[c].fraction != 1 || kind_of(level, c) != kind_of(level, at.value[at.begin[p]])) return false;
-    }
-    return true;
+    if (!cells.full_alike || apart[p] || !bonded[p].empty() || at[p].size() != 8) return false;
+    return std::all_of(at[p].begin(), at[p].end(), [&](int c) {
+      return level.filled[c].fraction == 1 && kind_of(level, c) == kind_of(level, at[p].front());
+    });
   };
   std::map<std::pair<int, int>, int> inside;  // first block of the rows inside, by the kind of their cells
   std::vector<int> seen(points, -1);
@@ -95,8 +79,8 @@ CutMatrix<Real>::CutMatrix(const StiffnessOfCells& cells, double unit, const Cut
   for (const int p : point_) {
     bool is_shared = is_inside(p);
     const auto start = static_cast<std::ptrdiff_t>(column_.size());
-    for (int e = at.begin[p]; e < at.begin[p + 1]; ++e)
-      for (const int q : level.corners[at.value[e]]) {
+    for (const int c : at[p])
+      for (const int q : level.corners[c]) {
         is_shared &= carriers.empty() || carriers[q].empty();
         for_each_carrier(carriers, q, [&](int j, double) {
           if (seen[j] == p) return;
@@ -117,7 +101,7 @@ CutMatrix<Real>::CutMatrix(const StiffnessOfCells& cells, double unit, const Cut
     const int entries = static_cast<int>(column_.size()) - begin_.back();
     begin_.push_back(static_cast<int>(column_.size()));
     if (is_shared && entries == 27) {
-      const auto [known, is_first] = inside.try_emplace(kind_of(level, at.value[at.begin[p]]), blocks);
+      const auto [known, is_first] = inside.try_emplace(kind_of(level, at[p].front()), blocks);
       first_.push_back(known->second);
       if (!is_first) continue;
     } else

@@ -8,20 +8,20 @@ namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE {
 template <typename Number>
 using Vector = dealii::LinearAlgebra::distributed::Vector<Number>;
 
-struct MixedVector {
+struct MixedField {
   Vector<double> u;  ///< displacement, or force
   Vector<double> p;  ///< pressure coefficients, or residual of the dilatation equation; empty without pressure
 
-  void add(double factor, const MixedVector& other) {
+  void add(double factor, const MixedField& other) {
     u.add(factor, other.u);
     p.add(factor, other.p);
   }
   /// this = this * s + other * t
-  void sadd(double s, double t, const MixedVector& other) {
+  void sadd(double s, double t, const MixedField& other) {
     u.sadd(s, t, other.u);
     p.sadd(s, t, other.p);
   }
-  double dot(const MixedVector& other) const { return u * other.u + p * other.p; }
+  double dot(const MixedField& other) const { return u * other.u + p * other.p; }
 };
 
 }  // namespace springproof::fem::SPRINGPROOF_SOLVER_NAMESPACE
