@@ -1,7 +1,7 @@
 #include "comparisons/prepare/input_checksum.h"
 
+#include "meshes/mesher/mesh_cache.h"
 #include "meshes/mesher/mesher.h"
-#include "meshes/mesher/script_files.h"
 #include "problem/files/checksum.h"
 #include "problem/files/files.h"
 

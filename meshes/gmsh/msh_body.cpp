@@ -10,7 +10,7 @@
 #include "meshes/gmsh/bodies.h"
 #include "meshes/gmsh/read_mesh.h"
 #include "meshes/gmsh/split_cells.h"
-#include "meshes/halved.h"
+#include "meshes/mesher/refined_meshes.h"
 #include "meshes/patches/transfer_patches.h"
 #include "meshes/quality.h"
 #include "meshes/regions/mark_regions.h"
