@@ -11,9 +11,7 @@
 #include "meshes/mesher/mesher_exchange.h"
 #include "meshes/mesher/refined_meshes.h"
 #include "meshes/patches/transfer_patches.h"
-#include "meshes/surface/obj.h"
-#include "meshes/surface/ply.h"
-#include "meshes/surface/stl.h"
+#include "meshes/surface/surface_files.h"
 #include "meshes/surface/surface_check.h"
 #include "meshes/united_numbers.h"
 
