@@ -21,7 +21,7 @@
 #include "comparisons/results/section_picture.h"
 #include "comparisons/sweep/find_cases.h"
 #include "meshes/volume.h"
-#include "msm/parameters/made_of.h"
+#include "msm/parameters/model_options.h"
 #include "problem/case_file/external.h"
 #include "problem/files/file_name.h"
 #include "problem/files/files.h"

@@ -8,7 +8,7 @@
 #include "msm/coarsening/measure_cells.h"
 #include "msm/dynamics/time_step.h"
 #include "msm/measure/moduli.h"
-#include "msm/parameters/made_of.h"
+#include "msm/parameters/model_options.h"
 #include "msm/periodic/bulk_calibration.h"
 #include "msm/periodic/homogenise.h"
 #include "msm/periodic/laws_of_model.h"

@@ -24,7 +24,7 @@
 #include "msm/exchange/lammps.h"
 #include "msm/laws/capabilities.h"
 #include "msm/models.h"
-#include "msm/parameters/made_of.h"
+#include "msm/parameters/model_options.h"
 #include "msm/topology/cubic_lattice.h"
 #include "problem/case_file/external.h"
 #include "problem/files/named_files.h"
