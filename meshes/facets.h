@@ -2,10 +2,10 @@
 #pragma once
 
 #include <algorithm>
-#include <limits>
 #include <utility>
+#include <vector>
 
-#include "meshes/surface/surface.h"
+#include "meshes/mesh.h"
 #include "meshes/united_numbers.h"
 
 namespace springproof {
@@ -56,22 +56,6 @@ inline Vec3 closest_point(const Vec3& p, const Vec3& a, const Vec3& b) {
 inline NodalVectors rows_of(const std::vector<Vec3>& points) {
   return Eigen::Map<const NodalVectors>(reinterpret_cast<const double*>(points.data()),
                                         static_cast<Eigen::Index>(points.size()), 3);
-}
-
-/// A box with nothing in it.
-inline Box empty_box() {
-  const Vec3 far = Vec3::Constant(std::numeric_limits<double>::infinity());
-  return {far, -far};
-}
-inline void add_to(Box& box, const Vec3& point) {
-  box.low = box.low.cwiseMin(point);
-  box.high = box.high.cwiseMax(point);
-}
-template <class Points>
-Box box_of(const Points& points) {
-  Box box = empty_box();
-  for (const Vec3& x : points) add_to(box, x);
-  return box;
 }
 
 }  // namespace springproof

@@ -6,7 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "meshes/facets.h"
+#include "meshes/box.h"
+#include "meshes/united_numbers.h"
 #include "meshes/volume.h"
 
 namespace springproof {

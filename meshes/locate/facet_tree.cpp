@@ -4,8 +4,6 @@
 #include <limits>
 #include <stdexcept>
 
-#include "meshes/facets.h"
-
 namespace springproof {
 namespace {
 
@@ -25,9 +23,8 @@ FacetTree::FacetTree(const Mesh& mesh, const std::vector<OuterFacet>& facets) {
   build(0, triangles_.size());
 }
 
-FacetTree::FacetTree(const Surface& surface) {
-  for (const auto& [a, b, c] : surface.triangles)
-    triangles_.push_back({{surface.points[a], surface.points[b], surface.points[c]}, triangles_.size()});
+FacetTree::FacetTree(const std::vector<Vec3>& points, const std::vector<std::array<int, 3>>& triangles) {
+  for (const auto& [a, b, c] : triangles) triangles_.push_back({{points[a], points[b], points[c]}, triangles_.size()});
   build(0, triangles_.size());
 }
 

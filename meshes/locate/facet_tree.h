@@ -3,7 +3,8 @@
 
 #include <vector>
 
-#include "meshes/surface/surface.h"
+#include "meshes/box.h"
+#include "meshes/locate/outer_facets.h"
 
 namespace springproof {
 
@@ -12,7 +13,7 @@ class FacetTree {
  public:
   /// @throws std::invalid_argument if there are no facets.
   FacetTree(const Mesh& mesh, const std::vector<OuterFacet>& facets);
-  explicit FacetTree(const Surface& surface);
+  FacetTree(const std::vector<Vec3>& points, const std::vector<std::array<int, 3>>& triangles);
 
   struct Nearest {
     std::size_t facet;  ///< number in `facets`; of several at the same distance the first

@@ -6,7 +6,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "meshes/facets.h"
+#include "meshes/box.h"
+#include "meshes/locate/outer_facets.h"
 
 namespace springproof {
 namespace {

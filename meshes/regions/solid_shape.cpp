@@ -62,7 +62,7 @@ Enclosed::Enclosed(const Surface& surface)
       box_(bounding_box(surface)),
       of_points_(surface.points.size(), Vec3::Zero()),
       beyond_(surface.triangles.size()),
-      tree_(surface) {
+      tree_(surface.points, surface.triangles) {
   std::map<std::array<int, 2>, std::array<int, 2>> sides;  // from, to: facet, side
   for (std::size_t f = 0; f < surface.triangles.size(); ++f) {
     const auto& t = surface.triangles[f];

@@ -76,7 +76,7 @@ double height(const Surface& body, const FacetTree& tree, const std::array<Vec3,
 }  // namespace
 
 Surface balanced(const Surface& surface, const Surface& body) {
-  const FacetTree tree(body);
+  const FacetTree tree(body.points, body.triangles);
   Surface moved = surface;
   for (int round = 0; round < rounds; ++round) {
     std::vector<double> heights;

@@ -194,8 +194,7 @@ void add_patches(const Mesh& body, const BodyParts& parts, const BodyPieces& pie
                             add_triangle(part, out, in_cell.try_emplace(cell, patch_in(cell)).first->second);
                           });
     }
-    auto& list = out.patches[patch.name];
-    for (auto& [cell, piece] : in_cell) list.push_back(piece);
+    for (auto& list = out.patches[patch.name]; const auto& [cell, piece] : in_cell) list.push_back(piece);
   }
 }
 

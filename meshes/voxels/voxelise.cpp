@@ -7,9 +7,10 @@
 #include <stdexcept>
 #include <utility>
 
-#include "meshes/facets.h"
+#include "meshes/box.h"
 #include "meshes/locate/tetrahedron_locator.h"
 #include "meshes/patches/transfer_patches.h"
+#include "meshes/united_numbers.h"
 #include "meshes/voxels/scan_lines.h"
 
 namespace springproof {

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "meshes/facets.h"
+#include "meshes/box.h"
 #include "meshes/volume.h"
 #include "msm/topology/ray_parity.h"
 
