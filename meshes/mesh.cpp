@@ -3,10 +3,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <stdexcept>
 #include <utility>
 
+#include "meshes/box.h"
+#include "meshes/united_numbers.h"
 #include "meshes/volume.h"
 
 namespace springproof {
@@ -48,21 +49,18 @@ std::optional<int> lattice_step(double x, double origin, double spacing, double 
 std::optional<Grid> lattice_of(const Mesh& mesh) {
   Grid grid;
   const Hexahedron& first = mesh.hexahedra.front();
-  Vec3 low = node(mesh, first[0]), high = low;
+  Box box = empty_box();
   for (const Hexahedron& hexahedron : mesh.hexahedra)
-    for (const int n : hexahedron) {
-      low = low.cwiseMin(node(mesh, n));
-      high = high.cwiseMax(node(mesh, n));
-    }
+    for (const int n : hexahedron) add_to(box, node(mesh, n));
   const Vec3 first_cell = node(mesh, first[6]) - node(mesh, first[0]);
   for (int c = 0; c < 3; ++c) {
-    const double extent = high[c] - low[c];
+    const double extent = box.high[c] - box.low[c];
     const double count = std::round(extent / first_cell[c]);
     if (!(count >= 1 && count < 1e6)) return std::nullopt;
     grid.cells[c] = static_cast<int>(count);
     grid.spacing[c] = extent / count;
   }
-  grid.origin = low;
+  grid.origin = box.low;
   return grid;
 }
 
@@ -159,24 +157,19 @@ Eigen::VectorXd nodal_volumes(const Mesh& mesh) {
 }
 
 int separate_parts(const Mesh& mesh) {
-  std::vector<int> parent(mesh.nodes.rows());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int n) {
-    while (parent[n] != n) n = parent[n] = parent[parent[n]];
-    return n;
-  };
-  std::vector<bool> used(parent.size());
+  UnitedNumbers parts(static_cast<std::size_t>(mesh.nodes.rows()));
+  std::vector<char> used(static_cast<std::size_t>(mesh.nodes.rows()), 0);
   const auto join = [&](const auto& cell) {
     for (const int n : cell) {
-      used[n] = true;
-      parent[root(n)] = root(cell[0]);
+      used[n] = 1;
+      parts.unite(n, cell[0]);
     }
   };
   for (const Hexahedron& cell : mesh.hexahedra) join(cell);
   for (const Tetrahedron& cell : mesh.tetrahedra) join(cell);
-  int parts = 0;
-  for (std::size_t n = 0; n < parent.size(); ++n) parts += used[n] && parent[n] == int(n);
-  return parts;
+  int count = 0;
+  for (int n = 0; n < static_cast<int>(used.size()); ++n) count += used[n] && parts.of(n) == n;
+  return count;
 }
 
 std::optional<Grid> detect_grid(const Mesh& mesh) {

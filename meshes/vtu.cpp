@@ -35,11 +35,6 @@ void write_array(std::ostream& out, const std::string& name, const char* type, i
       << "\" format=\"binary\">" << encoded(data, count) << "</DataArray>\n";
 }
 
-template <class T>
-void write_integers(std::ostream& out, const std::string& name, const char* type, const std::vector<T>& values) {
-  write_array(out, name, type, 1, values.data(), values.size());
-}
-
 void write_reals(std::ostream& out, const std::string& name, int components, const double* data, std::size_t count,
                  bool single) {
   if (single) {
@@ -94,9 +89,9 @@ std::string text_of(const VtuFile& vtu) {
   out << "      <Points>\n";
   write_reals(out, "position", 3, vtu.points.data(), static_cast<std::size_t>(vtu.points.size()), single);
   out << "      </Points>\n      <Cells>\n";
-  write_integers(out, "connectivity", "Int32", vtu.connectivity);
-  write_integers(out, "offsets", "Int32", vtu.offsets);
-  write_integers(out, "types", "UInt8", vtu.types);
+  write_array(out, "connectivity", "Int32", 1, vtu.connectivity.data(), vtu.connectivity.size());
+  write_array(out, "offsets", "Int32", 1, vtu.offsets.data(), vtu.offsets.size());
+  write_array(out, "types", "UInt8", 1, vtu.types.data(), vtu.types.size());
   out << "      </Cells>\n    </Piece>\n  </UnstructuredGrid>\n</VTKFile>\n";
   return std::move(out).str();
 }

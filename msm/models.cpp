@@ -16,8 +16,7 @@
 #include "msm/parameters/patch_fit.h"
 #include "msm/periodic/laws_of_model.h"
 #include "msm/topology/cubic_lattice.h"
-#include "msm/topology/hexagonal_lattice.h"
-#include "msm/topology/node_lattice.h"
+#include "msm/topology/lattices_without_cells.h"
 #include "msm/vertex_models.h"
 
 namespace springproof {

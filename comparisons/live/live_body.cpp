@@ -8,7 +8,7 @@
 #include <limits>
 #include <map>
 
-#include "meshes/surface/stl.h"
+#include "meshes/surface/surface_files.h"
 #include "meshes/voxels/voxelise.h"
 #include "problem/system/input_error.h"
 

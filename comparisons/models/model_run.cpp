@@ -14,7 +14,7 @@
 #include "comparisons/prepare/sampling.h"
 #include "comparisons/reference/reference_grids.h"
 #include "msm/laws/capabilities.h"
-#include "msm/measure/block_moduli.h"
+#include "msm/measure/local_fields.h"
 #include "msm/measure/statistics.h"
 #include "msm/models.h"
 #include "msm/parameters/calibrate.h"

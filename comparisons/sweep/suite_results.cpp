@@ -20,7 +20,7 @@
 #include "comparisons/results/picture.h"
 #include "comparisons/sweep/find_cases.h"
 #include "meshes/volume.h"
-#include "msm/parameters/made_of.h"
+#include "msm/parameters/model_options.h"
 #include "problem/files/file_name.h"
 #include "problem/files/files.h"
 #include "problem/system/streams.h"

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "meshes/facets.h"
 #include "meshes/gmsh/session.h"
 
 namespace springproof {
@@ -62,10 +63,6 @@ std::vector<double> heights_above(const Mesh& mesh, const Surface& outside) try 
   const auto place = [](const Vec3& x) { return std::array{x.x(), x.y(), x.z()}; };
   std::map<std::array<double, 3>, int> number;
   for (Eigen::Index n = 0; n < mesh.nodes.rows(); ++n) number[place(mesh.nodes.row(n))] = static_cast<int>(n);
-  const auto sorted = [](std::array<int, 3> facet) {
-    std::sort(facet.begin(), facet.end());
-    return facet;
-  };
   std::map<std::array<int, 3>, Vec3> rises;  // from a facet to its surface, as a mean
   gmsh::vectorpair volumes, surfaces;
   gmsh::model::getEntities(volumes, 3);
@@ -81,14 +78,14 @@ std::vector<double> heights_above(const Mesh& mesh, const Surface& outside) try 
           const auto found = number.find(place(nodes.at(b.node_tags[i + c]).at));
           facet[c] = found == number.end() ? -1 : found->second;
         }
-        rises[sorted(facet)] = (of_edges[i] + of_edges[i + 1] + of_edges[i + 2]) / 3;
+        rises[ascending(facet)] = (of_edges[i] + of_edges[i + 1] + of_edges[i + 2]) / 3;
       }
     }
   }
   std::vector<double> heights;
   for (const auto& [a, b, c] : outside.triangles) {
     const Vec3 &A = outside.points[a], &B = outside.points[b], &C = outside.points[c];
-    const auto found = rises.find(sorted({a, b, c}));
+    const auto found = rises.find(ascending(std::array{a, b, c}));
     heights.push_back(found == rises.end() ? 0 : found->second.dot((B - A).cross(C - A).normalized()));
   }
   return heights;

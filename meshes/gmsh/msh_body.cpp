@@ -9,8 +9,7 @@
 
 #include "meshes/gmsh/bodies.h"
 #include "meshes/gmsh/read_mesh.h"
-#include "meshes/gmsh/split_cells.h"
-#include "meshes/halved.h"
+#include "meshes/mesher/refined_meshes.h"
 #include "meshes/patches/transfer_patches.h"
 #include "meshes/quality.h"
 #include "meshes/regions/mark_regions.h"
@@ -61,14 +60,6 @@ ElementBlock joined(const std::vector<ElementBlock>& blocks) {
     all.materials.insert(all.materials.end(), blocks[b].materials.begin(), blocks[b].materials.end());
   }
   return all;
-}
-
-std::vector<int> entities(int dimension) {
-  gmsh::vectorpair pairs;
-  gmsh::model::getEntities(pairs, dimension);
-  std::vector<int> tags;
-  for (const auto& [d, tag] : pairs) tags.push_back(tag);
-  return tags;
 }
 
 MeshedBody read_cells(const MeshRequest& r, const std::vector<ElementBlock>& blocks, std::vector<std::string> notes) {
@@ -175,10 +166,6 @@ Surface surface_of(const MeshRequest& r) {
   return surface;
 }
 
-}  // namespace
-
-namespace {
-
 /// gmsh, with the file's mesh.
 class MshSession : public GmshSession {
  public:
@@ -194,15 +181,9 @@ class MshSession : public GmshSession {
 
 Surface vertices_of_msh(const MeshRequest& r) {
   const MshSession session(r.file);
-  std::vector<std::size_t> tags;
-  std::vector<double> coordinates, parametric;
-  gmsh::model::mesh::getNodes(tags, coordinates, parametric, -1, -1, false, false);
-  std::map<std::size_t, Vec3> nodes;
-  for (std::size_t i = 0; i < tags.size(); ++i)
-    nodes[tags[i]] = Vec3(coordinates[3 * i], coordinates[3 * i + 1], coordinates[3 * i + 2]);
   Surface surface;
   std::map<std::size_t, int> number;
-  for (const auto& [tag, at] : nodes) {
+  for (const auto& [tag, at] : node_positions()) {
     number[tag] = static_cast<int>(surface.points.size());
     surface.points.push_back(at);
   }

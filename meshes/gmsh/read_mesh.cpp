@@ -10,9 +10,8 @@
 #include <set>
 #include <tuple>
 
-#include "meshes/gmsh/split_cells.h"
+#include "meshes/facets.h"
 #include "meshes/mesher/mesher_exchange.h"
-#include "meshes/united_numbers.h"
 #include "meshes/volume.h"
 
 namespace springproof {
@@ -48,22 +47,18 @@ std::vector<int> coincident_nodes(const NodalVectors& X, double tolerance) {
 PartsByFacets parts_by_facets(const Mesh& mesh) {
   const std::size_t cells = mesh.hexahedra.size() + mesh.tetrahedra.size();
   UnitedNumbers part(cells);
-  std::map<std::array<int, 4>, int> first;  // a facet's nodes, ascending -> a cell
+  std::vector<std::pair<std::array<int, 4>, int>> facets;  // nodes and cell
   std::vector<int> at_node(static_cast<std::size_t>(mesh.nodes.rows()), -1);
   int cell = 0;
-  const auto visit = [&](std::array<int, 4> facet) {
-    std::sort(facet.begin(), facet.end());
-    if (const auto [at, is_new] = first.try_emplace(facet, cell); !is_new) part.unite(at->second, cell);
-  };
   for (const Hexahedron& h : mesh.hexahedra) {
-    for (int f = 0; f < 6; ++f) visit(face_of(h, f));
+    for (int f = 0; f < 6; ++f) facets.emplace_back(ascending(face_of(h, f)), cell);
     ++cell;
   }
-  for (const auto& [a, b, c, d] : mesh.tetrahedra) {
-    for (const std::array<int, 4>& facet : {std::array{a, b, c, -1}, {a, b, d, -1}, {a, c, d, -1}, {b, c, d, -1}})
-      visit(facet);
+  for (const Tetrahedron& t : mesh.tetrahedra) {
+    for (const std::array<int, 4>& facet : facets_of(t)) facets.emplace_back(ascending(facet), cell);
     ++cell;
   }
+  unite_by_key(std::move(facets), part);
   std::set<int> heads;
   for (int c = 0; c < static_cast<int>(cells); ++c) heads.insert(part.of(c));
   PartsByFacets parts{static_cast<int>(heads.size()), Vec3::Zero()};
@@ -253,15 +248,10 @@ void refuse_parts(const fs::path& file, const Mesh& mesh) {
                            parts.count, parts.hinge[0], parts.hinge[1], parts.hinge[2], remedy));
 }
 
-std::array<int, 4> sorted(std::array<int, 4> facet) {
-  std::sort(facet.begin(), facet.end());
-  return facet;
-}
-
 using FacetPatches = std::map<std::array<int, 4>, std::vector<int>>;  ///< patches by the facet's nodes, sorted
 
 /// A facet of a physical surface as those of the cells: quadrilaterals before tetrahedra as two triangles.
-std::vector<std::array<std::size_t, 4>> facets_of(const std::size_t* tags, std::size_t corners, bool tetrahedra) {
+std::vector<std::array<std::size_t, 4>> facet_tags(const std::size_t* tags, std::size_t corners, bool tetrahedra) {
   if (corners < 4) return {{tags[0], tags[1], tags[2], 0}};
   if (!tetrahedra) return {{tags[0], tags[1], tags[2], tags[3]}};
   std::vector<std::array<std::size_t, 4>> facets;
@@ -275,11 +265,11 @@ FacetPatches wanted_facets(const Nodes& nodes, bool tetrahedra, std::vector<Patc
   for (const PhysicalSurface& surface : physical_surfaces()) {
     for (const ElementBlock& block : surface.facets)
       for (std::size_t i = 0; i < block.node_tags.size(); i += block.nodes)
-        for (const auto& tags : facets_of(&block.node_tags[i], block.corners, tetrahedra)) {
+        for (const auto& tags : facet_tags(&block.node_tags[i], block.corners, tetrahedra)) {
           std::array<int, 4> facet = {-1, -1, -1, -1};
           for (int c = 0; c < 4; ++c)
             if (tags[c] > 0) facet[c] = nodes.number.at(tags[c]);
-          std::vector<int>& names = wanted[sorted(facet)];
+          std::vector<int>& names = wanted[ascending(facet)];
           if (names.empty() || names.back() != static_cast<int>(patches.size()))
             names.push_back(static_cast<int>(patches.size()));
         }
@@ -295,7 +285,7 @@ void leave_out(const std::vector<std::array<int, 4>>& facets, const std::set<int
   std::set<std::array<int, 4>> keys(facets.begin(), facets.end());
   for (const int p : inside) {
     Patch& patch = patches[p];
-    std::erase_if(patch.facets, [&](const std::array<int, 4>& f) { return keys.contains(sorted(f)); });
+    std::erase_if(patch.facets, [&](const std::array<int, 4>& f) { return keys.contains(ascending(f)); });
     notes.push_back(patch.facets.empty()
                         ? fmt::format("the physical surface '{}' lies inside of the body: it is no patch", patch.name)
                         : fmt::format("the physical surface '{}' lies inside of the body in part: the patch is the "
@@ -317,7 +307,7 @@ std::vector<Patch> read_patches(const Mesh& mesh, const Nodes& nodes, std::vecto
   const auto visit = [&](const std::array<int, 4>& facet) {
     for (const int n : facet)
       if (n >= 0 && !on_patch[n]) return;
-    const std::array<int, 4> key = sorted(facet);
+    const std::array<int, 4> key = ascending(facet);
     const auto found = wanted.find(key);
     if (found == wanted.end()) return;
     ++times_seen[key];
@@ -325,9 +315,8 @@ std::vector<Patch> read_patches(const Mesh& mesh, const Nodes& nodes, std::vecto
   };
   for (const Hexahedron& cell : mesh.hexahedra)
     for (int f = 0; f < 6; ++f) visit(face_of(cell, f));
-  for (const auto& [a, b, c, d] : mesh.tetrahedra)
-    for (const std::array<int, 4>& facet : {std::array{a, c, b, -1}, {a, b, d, -1}, {b, c, d, -1}, {a, d, c, -1}})
-      visit(facet);
+  for (const Tetrahedron& cell : mesh.tetrahedra)
+    for (const std::array<int, 4>& facet : facets_of(cell)) visit(facet);
   std::vector<std::array<int, 4>> off;
   std::set<int> inside;
   for (const auto& [facet, names] : wanted)

@@ -97,18 +97,6 @@ std::size_t count_of(const std::vector<ElementBlock>& blocks) {
   return count;
 }
 
-std::vector<int> volumes() {
-  gmsh::vectorpair all;
-  gmsh::model::getEntities(all, 3);
-  std::vector<int> entities;
-  for (const auto& [dimension, tag] : all) entities.push_back(tag);
-  return entities;
-}
-
-}  // namespace
-
-namespace {
-
 /// A physical volume and the entities in it.
 struct PhysicalVolume {
   std::string name;  ///< its number if it has none
@@ -178,7 +166,7 @@ std::vector<ElementBlock> volume_elements(const std::filesystem::path& file, con
                              "(allowed: one physical volume that holds all of it, none, or a [[region]] with volume = "
                              "\"{}\" for those that are not of [material])",
                              names_of(groups), groups.back().name));
-  const auto blocks = elements(3, {all.begin(), all.end()}, materials), whole = elements(3, volumes());
+  const auto blocks = elements(3, {all.begin(), all.end()}, materials), whole = elements(3, entities(3));
   if (blocks.empty()) return whole;
   if (const std::size_t left_out = count_of(whole) - count_of(blocks); left_out > 0)
     notes.push_back(fmt::format("{} of the file's {} cells are in no physical volume and are no part of the body",
@@ -193,12 +181,29 @@ std::vector<PhysicalSurface> physical_surfaces() {
   for (const auto& [dimension, tag] : groups) {
     PhysicalSurface surface;
     surface.name = name_of_group(dimension, tag);
-    std::vector<int> entities;
-    gmsh::model::getEntitiesForPhysicalGroup(dimension, tag, entities);
-    surface.facets = elements(dimension, entities);
+    std::vector<int> members;
+    gmsh::model::getEntitiesForPhysicalGroup(dimension, tag, members);
+    surface.facets = elements(dimension, members);
     found.push_back(std::move(surface));
   }
   return found;
+}
+
+std::vector<int> entities(int dimension) {
+  gmsh::vectorpair pairs;
+  gmsh::model::getEntities(pairs, dimension);
+  std::vector<int> tags;
+  for (const auto& [d, tag] : pairs) tags.push_back(tag);
+  return tags;
+}
+
+std::map<std::size_t, Vec3> node_positions() {
+  std::vector<std::size_t> tags;
+  std::vector<double> at, parametric;
+  gmsh::model::mesh::getNodes(tags, at, parametric, -1, -1, false, false);
+  std::map<std::size_t, Vec3> all;
+  for (std::size_t n = 0; n < tags.size(); ++n) all[tags[n]] = Vec3(at[3 * n], at[3 * n + 1], at[3 * n + 2]);
+  return all;
 }
 
 }  // namespace springproof

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "problem/system/input_error.h"
+#include "problem/vector.h"
 
 namespace springproof {
 
@@ -56,5 +57,11 @@ struct PhysicalSurface {
 };
 
 std::vector<PhysicalSurface> physical_surfaces();
+
+/// The model's entities of one dimension.
+std::vector<int> entities(int dimension);
+
+/// Of all nodes of the mesh, by their tags.
+std::map<std::size_t, Vec3> node_positions();
 
 }  // namespace springproof

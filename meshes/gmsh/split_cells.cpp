@@ -1,4 +1,4 @@
-#include "meshes/gmsh/split_cells.h"
+#include "meshes/gmsh/read_mesh.h"
 
 #include <fmt/format.h>
 #include <gmsh.h>
@@ -9,7 +9,7 @@
 #include <optional>
 #include <set>
 
-#include "problem/vector.h"
+#include "meshes/facets.h"
 
 namespace springproof {
 namespace {
@@ -24,11 +24,6 @@ const std::map<std::size_t, Facets> facets_of_cells = {
     {6, {{0, 2, 1}, {3, 4, 5}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}}},
     {8, {{0, 3, 2, 1}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}, {4, 5, 6, 7}}}};
 
-Triangle sorted_triangle(Triangle t) {
-  std::sort(t.begin(), t.end());
-  return t;
-}
-
 /// Calls act(corners, facets, material) for each cell.
 template <class Act>
 void for_each_cell(const std::vector<ElementBlock>& blocks, const Act& act) {
@@ -36,15 +31,6 @@ void for_each_cell(const std::vector<ElementBlock>& blocks, const Act& act) {
     for (std::size_t i = 0; i < b.node_tags.size(); i += b.nodes)
       act(std::vector<std::size_t>(&b.node_tags[i], &b.node_tags[i] + b.corners), facets_of_cells.at(b.corners),
           b.materials.empty() ? std::nullopt : std::optional(b.materials[i / b.nodes]));
-}
-
-std::map<std::size_t, Vec3> positions() {
-  std::vector<std::size_t> tags;
-  std::vector<double> at, parametric;
-  gmsh::model::mesh::getNodes(tags, at, parametric, -1, -1, false, false);
-  std::map<std::size_t, Vec3> all;
-  for (std::size_t n = 0; n < tags.size(); ++n) all[tags[n]] = Vec3(at[3 * n], at[3 * n + 1], at[3 * n + 2]);
-  return all;
 }
 
 }  // namespace
@@ -63,9 +49,9 @@ ElementBlock split_into_tetrahedra(const std::filesystem::path& file, const std:
   std::set<Triangle> known;  // of cells with triangular facets, beside which quadrilaterals are cut alike
   for_each_cell(blocks, [&](const std::vector<std::size_t>& corners, const Facets& facets, const auto&) {
     for (const std::vector<std::size_t>& f : facets)
-      if (f.size() == 3) known.insert(sorted_triangle({corners[f[0]], corners[f[1]], corners[f[2]]}));
+      if (f.size() == 3) known.insert(ascending(Triangle{corners[f[0]], corners[f[1]], corners[f[2]]}));
   });
-  const std::map<std::size_t, Vec3> position = positions();
+  const std::map<std::size_t, Vec3> position = node_positions();
   std::size_t middle = position.rbegin()->first;
   std::vector<std::size_t> middles;
   std::vector<double> coordinates;
@@ -85,9 +71,9 @@ ElementBlock split_into_tetrahedra(const std::filesystem::path& file, const std:
         const auto c = [&](std::size_t n) { return corners[f[n]]; };
         const std::vector<Triangle> others = {{c(0), c(1), c(2)}, {c(0), c(2), c(3)}},
                                     across = {{c(1), c(2), c(3)}, {c(1), c(3), c(0)}};
-        triangles = known.contains(sorted_triangle(others[0]))   ? others
-                    : known.contains(sorted_triangle(across[0])) ? across
-                                                                 : triangles_of({c(0), c(1), c(2), c(3)});
+        triangles = known.contains(ascending(others[0]))   ? others
+                    : known.contains(ascending(across[0])) ? across
+                                                           : triangles_of({c(0), c(1), c(2), c(3)});
       }
       for (const auto& [a, b, d] : triangles) all.node_tags.insert(all.node_tags.end(), {a, d, b, middle});
     }
@@ -98,9 +84,7 @@ ElementBlock split_into_tetrahedra(const std::filesystem::path& file, const std:
     split(corners, facets);
     if (material) all.materials.resize(all.materials.size() + all.count() - before, *material);
   });
-  gmsh::vectorpair volumes;
-  gmsh::model::getEntities(volumes, 3);
-  if (!middles.empty()) gmsh::model::mesh::addNodes(3, volumes.front().second, middles, coordinates);
+  if (!middles.empty()) gmsh::model::mesh::addNodes(3, entities(3).front(), middles, coordinates);
   return all;
 }
 

@@ -7,15 +7,13 @@
 #include <map>
 #include <numeric>
 
+#include "meshes/facets.h"
 #include "meshes/gmsh/bodies.h"
 #include "meshes/mesher/mesher_exchange.h"
 #include "meshes/mesher/refined_meshes.h"
 #include "meshes/patches/transfer_patches.h"
-#include "meshes/surface/obj.h"
-#include "meshes/surface/ply.h"
-#include "meshes/surface/stl.h"
 #include "meshes/surface/surface_check.h"
-#include "meshes/united_numbers.h"
+#include "meshes/surface/surface_files.h"
 
 namespace springproof {
 namespace {
@@ -86,10 +84,6 @@ Mesh fill(const MeshRequest& r, const Surface& surface) {
   std::vector<std::string> none;  // a surface and the volume in it
   return fill_with_tetrahedra(r, session, none);
 }
-
-}  // namespace
-
-namespace {
 
 constexpr double most_change = 0.01;  ///< of the volume by remeshing, of the finest mesh
 constexpr double slack = 1.5;         ///< of the coarser ones, whose loss is the square of their edges only on average
@@ -175,15 +169,10 @@ MeshedBody filled_alone(const MeshRequest& r, FileSurface& source) {
 /// Adds the parts that the file names as patches.
 void add_parts(const Surface& raw, Mesh& mesh) {
   Mesh from;
-  from.nodes.resize(static_cast<Eigen::Index>(raw.points.size()), 3);
-  for (std::size_t n = 0; n < raw.points.size(); ++n)
-    from.nodes.row(static_cast<Eigen::Index>(n)) = raw.points[n].transpose();
+  from.nodes = rows_of(raw.points);
   std::vector<OuterFacet> facets;
-  for (const auto& [a, b, c] : raw.triangles) {
-    std::array<int, 4> key = {-1, a, b, c};
-    std::sort(key.begin(), key.end());
-    facets.push_back({key, {a, b, c, -1}, Vec3::Zero()});
-  }
+  for (const auto& [a, b, c] : raw.triangles)
+    facets.push_back({ascending(std::array{-1, a, b, c}), {a, b, c, -1}, Vec3::Zero()});
   for (const auto& [name, triangles] : raw.parts) {
     Patch& patch = from.patches.emplace_back(Patch{name, {}});
     for (const int t : triangles) patch.facets.push_back(facets[t].nodes);

@@ -13,7 +13,6 @@ constexpr double margin = 1 + 1e-12;  // for round-off, so that equal distances 
 }  // namespace
 
 FacetTree::FacetTree(const Mesh& mesh, const std::vector<OuterFacet>& facets) {
-  if (facets.empty()) throw std::invalid_argument("FacetTree: no facets");
   const auto x = [&](int n) -> Vec3 { return mesh.nodes.row(n).transpose(); };
   triangles_.reserve(2 * facets.size());
   for (std::size_t f = 0; f < facets.size(); ++f) {
@@ -24,15 +23,18 @@ FacetTree::FacetTree(const Mesh& mesh, const std::vector<OuterFacet>& facets) {
   build(0, triangles_.size());
 }
 
+FacetTree::FacetTree(const std::vector<Vec3>& points, const std::vector<std::array<int, 3>>& triangles) {
+  for (const auto& [a, b, c] : triangles) triangles_.push_back({{points[a], points[b], points[c]}, triangles_.size()});
+  build(0, triangles_.size());
+}
+
 std::size_t FacetTree::build(std::size_t begin, std::size_t end) {
-  const std::size_t number = boxes_.size();
-  Box box{triangles_[begin].x[0], triangles_[begin].x[0], begin, end, 0};
+  if (begin == end) throw std::invalid_argument("FacetTree: no facets");
+  const std::size_t number = parts_.size();
+  Box box = empty_box();
   for (std::size_t t = begin; t < end; ++t)
-    for (const Vec3& p : triangles_[t].x) {
-      box.low = box.low.cwiseMin(p);
-      box.high = box.high.cwiseMax(p);
-    }
-  boxes_.push_back(box);
+    for (const Vec3& p : triangles_[t].x) add_to(box, p);
+  parts_.push_back({box, begin, end, 0});
   if (end - begin <= leaf) return number;
   int axis;
   (box.high - box.low).maxCoeff(&axis);
@@ -42,14 +44,14 @@ std::size_t FacetTree::build(std::size_t begin, std::size_t end) {
                    [&](const Triangle& a, const Triangle& b) { return key(a) < key(b); });
   build(begin, middle);
   const std::size_t second = build(middle, end);
-  boxes_[number].second = second;
+  parts_[number].second = second;
   return number;
 }
 
 void FacetTree::search(std::size_t number, const Vec3& p, Nearest& best) const {
-  const Box& box = boxes_[number];
-  if (box.second == 0) {
-    for (std::size_t i = box.begin; i < box.end; ++i) {
+  const Part& part = parts_[number];
+  if (part.second == 0) {
+    for (std::size_t i = part.begin; i < part.end; ++i) {
       const Triangle& t = triangles_[i];
       const Vec3 point = closest_point(p, t.x[0], t.x[1], t.x[2]);
       const double distance = (point - p).norm();
@@ -58,8 +60,8 @@ void FacetTree::search(std::size_t number, const Vec3& p, Nearest& best) const {
     }
     return;
   }
-  std::size_t near = number + 1, far = box.second;
-  double to_near = boxes_[near].distance(p), to_far = boxes_[far].distance(p);
+  std::size_t near = number + 1, far = part.second;
+  double to_near = parts_[near].distance(p), to_far = parts_[far].distance(p);
   if (to_far < to_near) {
     std::swap(near, far);
     std::swap(to_near, to_far);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "meshes/box.h"
 #include "meshes/locate/outer_facets.h"
 
 namespace springproof {
@@ -62,13 +63,10 @@ bool in_unit_cube(const Vec3& xi) {
 
 std::optional<Location> find_in_any(const Mesh& mesh, const Vec3& point) {
   for (std::size_t c = 0; c < mesh.hexahedra.size(); ++c) {
-    Vec3 low = Vec3::Constant(1e300), high = -low;
-    for (int n : mesh.hexahedra[c]) {
-      low = low.cwiseMin(mesh.nodes.row(n).transpose());
-      high = high.cwiseMax(mesh.nodes.row(n).transpose());
-    }
-    const double slack = cell_tolerance * (high - low).norm();
-    if ((point.array() < low.array() - slack).any() || (point.array() > high.array() + slack).any()) continue;
+    Box box = empty_box();
+    for (int n : mesh.hexahedra[c]) add_to(box, mesh.nodes.row(n).transpose());
+    const double slack = cell_tolerance * (box.high - box.low).norm();
+    if ((point.array() < box.low.array() - slack).any() || (point.array() > box.high.array() + slack).any()) continue;
     const auto xi = trilinear_coordinates(mesh, mesh.hexahedra[c], point);
     if (xi && in_unit_cube(*xi)) return Location{c, trilinear(*xi).shape};
   }

@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "meshes/box.h"
 #include "meshes/locate/outer_facets.h"
 
 namespace springproof {
@@ -13,25 +14,16 @@ namespace {
 
 constexpr double weight_tolerance = 1e-9;  // of the weights: a point this far outside is inside
 
-struct CornerBox {
-  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
-
-  void add(const Vec3& p) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-};
-
 }  // namespace
 
 TetrahedronLocator::TetrahedronLocator(const NodalVectors& X, const std::vector<Tetrahedron>& cells) {
   if (cells.empty()) throw std::invalid_argument("no tetrahedra to look for points in");
-  CornerBox all;
-  std::vector<CornerBox> extents(cells.size());
+  Box all = empty_box();
+  std::vector<Box> extents(cells.size(), all);
   for (std::size_t c = 0; c < cells.size(); ++c) {
-    for (const int n : cells[c]) extents[c].add(X.row(n).transpose());
-    all.add(extents[c].low);
-    all.add(extents[c].high);
+    for (const int n : cells[c]) add_to(extents[c], X.row(n).transpose());
+    add_to(all, extents[c].low);
+    add_to(all, extents[c].high);
     Cell cell;
     for (int i = 0; i < 4; ++i) cell.corners[i] = X.row(cells[c][i]).transpose();
     Eigen::Matrix3d edges;

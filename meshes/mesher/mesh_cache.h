@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "meshes/mesher/mesher.h"
@@ -16,6 +17,10 @@ std::filesystem::path kept_folder();
 
 /// Of a file: another one in its place, or another content, has another line.
 std::string line_of(const std::filesystem::path& file);
+
+/// The file and, as gmsh scripts may include or merge others, every file that is named in one of its strings, those
+/// files' own too. A '%' in a name stands for anything; names that a script puts together from pieces are not seen.
+std::set<std::filesystem::path> files_behind(const std::filesystem::path& body);
 
 /// A place for one mesh among those kept (problem/files/kept_file.h).
 class MeshCache {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "meshes/facets.h"
 #include "meshes/mesh_json.h"
 #include "problem/system/json.h"
 
@@ -65,9 +66,7 @@ Surface surface_of(const Mesh& mesh) {
 
 Mesh mesh_of(const Surface& surface, const std::string& patch) {
   Mesh mesh;
-  mesh.nodes.resize(static_cast<Eigen::Index>(surface.points.size()), 3);
-  for (std::size_t n = 0; n < surface.points.size(); ++n)
-    mesh.nodes.row(static_cast<Eigen::Index>(n)) = surface.points[n].transpose();
+  mesh.nodes = rows_of(surface.points);
   Patch& facets = mesh.patches.emplace_back(Patch{patch, {}});
   for (const auto& [a, b, c] : surface.triangles) facets.facets.push_back({a, b, c, -1});
   return mesh;

@@ -26,4 +26,9 @@ MeshedBody mesh_refined(const MeshRequest& request, const MeshAt& at);
 /// One mesh alone, with its notes.
 MeshedBody mesh_alone(const MeshRequest& request, OneMesh made);
 
+/// Each tetrahedron cut into eight at the middles of its edges, the octahedron between them along its shortest
+/// diagonal; each facet of a patch into four.  Materials stay with the parts.
+/// @param mesh of tetrahedra
+Mesh halved(const Mesh& mesh);
+
 }  // namespace springproof

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "meshes/locate/outer_facets.h"
+#include "meshes/facets.h"
 #include "meshes/volume.h"
 
 namespace springproof {
@@ -54,10 +54,9 @@ CutMesh::CutMesh(const Mesh& mesh)
   }
   patches_.resize(keys.size());
   for (std::size_t p = 0; p < mesh.patches.size(); ++p)
-    for (std::array<int, 4> facet : mesh.patches[p].facets) {
-      std::sort(facet.begin(), facet.end());
-      const auto found = std::lower_bound(keys.begin(), keys.end(), facet);
-      if (found != keys.end() && *found == facet) add_to_patch(found - keys.begin(), static_cast<int>(p));
+    for (const auto& facet : mesh.patches[p].facets) {
+      const auto found = std::lower_bound(keys.begin(), keys.end(), ascending(facet));
+      if (found != keys.end() && *found == ascending(facet)) add_to_patch(found - keys.begin(), static_cast<int>(p));
     }
 }
 
@@ -183,9 +182,7 @@ bool CutMesh::move(const std::vector<int>& nodes, const std::vector<Vec3>& to) {
 
 Mesh CutMesh::mesh(const std::vector<std::string>& patches) const {
   Mesh mesh;
-  mesh.nodes.resize(static_cast<Eigen::Index>(points().size()), 3);
-  for (std::size_t n = 0; n < points().size(); ++n)
-    mesh.nodes.row(static_cast<Eigen::Index>(n)) = points()[n].transpose();
+  mesh.nodes = rows_of(points());
   mesh.tetrahedra = cells_;
   mesh.materials = materials_;
   for (const std::string& name : patches) mesh.patches.push_back({name, {}});

@@ -3,10 +3,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <set>
 #include <utility>
+
+#include "meshes/facets.h"
 
 namespace springproof {
 namespace {
@@ -61,14 +62,11 @@ class Imprint {
 
   /// Of the patch; within twice the sphere's radius.
   double extent() const {
-    Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+    Box box = empty_box();
     for_each_part([&](std::size_t, const FacetPart& part) {
-      for (const Vec3& x : part.polygon) {
-        low = low.cwiseMin(x);
-        high = high.cwiseMax(x);
-      }
+      for (const Vec3& x : part.polygon) add_to(box, x);
     });
-    const double extent = (high - low).norm();
+    const double extent = (box.high - box.low).norm();
     return region_.sphere ? std::min(extent, 2 * region_.sphere->radius) : extent;
   }
 
@@ -127,7 +125,7 @@ class Imprint {
   std::vector<Crossing> crossings_of(const Border& border) const {
     std::set<std::pair<int, int>> edges;
     for_each_part([&](std::size_t f, const FacetPart&) {
-      for (int c = 0; c < 3; ++c) edges.insert(std::minmax(corners(f)[c], corners(f)[(c + 1) % 3]));
+      for (int c = 0; c < 3; ++c) edges.insert(edge_of(corners(f), c));
     });
     std::vector<Crossing> crossings;
     for (const auto& [a, b] : edges)

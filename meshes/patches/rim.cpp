@@ -8,7 +8,7 @@
 #include <set>
 #include <utility>
 
-#include "meshes/locate/outer_facets.h"
+#include "meshes/facets.h"
 #include "meshes/patches/cut_mesh.h"
 
 namespace springproof {
@@ -16,27 +16,14 @@ namespace {
 
 constexpr double least_turn = std::numbers::pi / 6;  // of the surface at an edge of the body
 
-using FacetEdge = std::pair<int, int>;
-
-int corner_count(const std::array<int, 4>& facet) { return facet[3] < 0 ? 3 : 4; }
-
-FacetEdge facet_edge(const std::array<int, 4>& facet, int c) {
-  return std::minmax(facet[c], facet[(c + 1) % corner_count(facet)]);
-}
-
 Vec3 outward_normal(const Mesh& mesh, const OuterFacet& facet) {
   const auto& n = facet.nodes;
   const auto X = [&](int i) -> Vec3 { return mesh.nodes.row(n[i]).transpose(); };
-  const Vec3 normal = corner_count(n) == 3 ? (X(1) - X(0)).cross(X(2) - X(0)) : (X(2) - X(0)).cross(X(3) - X(1));
+  const Vec3 normal = corners_of(n) == 3 ? (X(1) - X(0)).cross(X(2) - X(0)) : (X(2) - X(0)).cross(X(3) - X(1));
   return (normal.dot(X(0) - facet.cell_centre) < 0 ? -1 : 1) * normal.normalized();
 }
 
-std::array<int, 4> sorted_key(std::array<int, 4> facet) {
-  std::sort(facet.begin(), facet.end());
-  return facet;
-}
-
-using SurfaceEdge = std::array<int, 2>;
+using SurfaceEdge = std::pair<int, int>;
 
 class Rims {
  public:
@@ -49,11 +36,8 @@ class Rims {
   }
 
  private:
-  SurfaceEdge edge(std::size_t facet, int c) const {
-    const auto& t = mesh_.surface().triangles[facet];
-    return {std::min(t[c], t[(c + 1) % 3]), std::max(t[c], t[(c + 1) % 3])};
-  }
-  double length(const SurfaceEdge& e) const { return (mesh_.points()[e[0]] - mesh_.points()[e[1]]).norm(); }
+  SurfaceEdge edge(std::size_t facet, int c) const { return edge_of(mesh_.surface().triangles[facet], c); }
+  double length(const SurfaceEdge& e) const { return (mesh_.points()[e.first] - mesh_.points()[e.second]).norm(); }
 
   /// Ends of edges between a facet in a patch and one that is not.
   std::set<int> nodes() const {
@@ -63,7 +47,7 @@ class Rims {
       for (std::size_t f = 0; f < mesh_.surface().triangles.size(); ++f)
         for (int c = 0; mesh_.is_in_patch(f, patch) && c < 3; ++c)
           if (const auto [at, is_new] = border.insert(edge(f, c)); !is_new) border.erase(at);
-      for (const SurfaceEdge& e : border) on.insert(e.begin(), e.end());
+      for (const auto& [a, b] : border) on.insert({a, b});
     }
     return on;
   }
@@ -89,15 +73,15 @@ class Rims {
 
 std::vector<RimEdge> rim_of(const Mesh& mesh, const Patch& patch) {
   std::set<std::array<int, 4>> within;
-  std::map<FacetEdge, int> times;
+  std::map<SurfaceEdge, int> times;
   for (const auto& facet : patch.facets) {
-    within.insert(sorted_key(facet));
-    for (int c = 0; c < corner_count(facet); ++c) ++times[facet_edge(facet, c)];
+    within.insert(ascending(facet));
+    for (int c = 0; c < corners_of(facet); ++c) ++times[edge_of(facet, c)];
   }
-  std::map<FacetEdge, std::array<Vec3, 2>> normals;  // of the facet without, and within
+  std::map<SurfaceEdge, std::array<Vec3, 2>> normals;  // of the facet without, and within
   for (const OuterFacet& facet : outer_facets(mesh))
-    for (int c = 0; c < corner_count(facet.nodes); ++c)
-      if (const auto at = times.find(facet_edge(facet.nodes, c)); at != times.end() && at->second == 1)
+    for (int c = 0; c < corners_of(facet.nodes); ++c)
+      if (const auto at = times.find(edge_of(facet.nodes, c)); at != times.end() && at->second == 1)
         normals[at->first][within.contains(facet.key)] = outward_normal(mesh, facet);
   std::vector<RimEdge> rim;
   for (const auto& [edge, n] : normals)

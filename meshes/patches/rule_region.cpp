@@ -7,7 +7,7 @@
 #include <numbers>
 #include <utility>
 
-#include "meshes/locate/outer_facets.h"
+#include "meshes/facets.h"
 
 namespace springproof {
 namespace {
@@ -112,37 +112,25 @@ FacetPart part_of(const RuleRegion& region, Polygon polygon) {
   return {m.area * n, origin + at.x() * e1 + at.y() * e2, std::move(polygon)};
 }
 
-double distance(const Vec3& p, const Vec3& a, const Vec3& b) {
-  const Vec3 d = b - a;
-  return (a + std::clamp((p - a).dot(d) / d.squaredNorm(), 0.0, 1.0) * d - p).norm();
-}
-
 /// Which facets are connected with those at the sphere's centre, by edges that reach into it.
 std::vector<char> piece_around(const Border& sphere, const Surface& s, double slack) {
+  const Vec3& centre = sphere.point;
   const auto X = [&](int n) -> const Vec3& { return s.points[n]; };
-  std::vector<std::pair<std::pair<int, int>, std::size_t>> edges;  // and a facet that has it
-  std::vector<std::size_t> todo;
-  std::vector<char> piece(s.triangles.size(), 0);
-  for (std::size_t f = 0; f < piece.size(); ++f) {
+  const auto distance = [&](const Vec3& nearest) { return (nearest - centre).norm(); };
+  std::vector<std::pair<std::pair<int, int>, int>> edges;  // and a facet that has it
+  std::vector<char> at_centre(s.triangles.size(), 0);
+  for (std::size_t f = 0; f < at_centre.size(); ++f) {
     const Triangle& t = s.triangles[f];
     for (int c = 0; c < 3; ++c)
-      if (distance(sphere.point, X(t[c]), X(t[(c + 1) % 3])) < sphere.radius)
-        edges.emplace_back(std::minmax(t[c], t[(c + 1) % 3]), f);
-    if ((closest_point(sphere.point, X(t[0]), X(t[1]), X(t[2])) - sphere.point).norm() > slack) continue;
-    piece[f] = 1;
-    todo.push_back(f);
+      if (const auto [a, b] = edge_of(t, c); distance(closest_point(centre, X(a), X(b))) < sphere.radius)
+        edges.emplace_back(edge_of(t, c), static_cast<int>(f));
+    at_centre[f] = distance(closest_point(centre, X(t[0]), X(t[1]), X(t[2]))) <= slack;
   }
-  std::sort(edges.begin(), edges.end());
-  while (!todo.empty()) {
-    const Triangle t = s.triangles[todo.back()];
-    todo.pop_back();
-    for (int c = 0; c < 3; ++c) {
-      const std::pair<int, int> edge = std::minmax(t[c], t[(c + 1) % 3]);
-      for (auto it = std::lower_bound(edges.begin(), edges.end(), std::pair(edge, std::size_t{0}));
-           it != edges.end() && it->first == edge; ++it)
-        if (!std::exchange(piece[it->second], 1)) todo.push_back(it->second);
-    }
-  }
+  UnitedNumbers pieces(at_centre.size());
+  unite_by_key(std::move(edges), pieces);
+  std::vector<char> wanted(at_centre.size(), 0), piece = wanted;
+  for (std::size_t f = 0; f < piece.size(); ++f) wanted[pieces.of(static_cast<int>(f))] |= at_centre[f];
+  for (std::size_t f = 0; f < piece.size(); ++f) piece[f] = wanted[pieces.of(static_cast<int>(f))];
   return piece;
 }
 

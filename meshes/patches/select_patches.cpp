@@ -10,6 +10,7 @@
 #include <numbers>
 #include <utility>
 
+#include "meshes/facets.h"
 #include "meshes/locate/facet_tree.h"
 #include "meshes/patches/imprint.h"
 #include "meshes/patches/rule_region.h"
@@ -23,26 +24,22 @@ constexpr double selection_tolerance = 1e-9;  // of the body: boundaries belong 
 struct Facets {
   std::vector<OuterFacet> facets;
   std::vector<Vec3> middle, normal;
-  Vec3 low, high;
+  Box box;
 
-  double slack() const { return selection_tolerance * (high - low).norm(); }
+  double slack() const { return selection_tolerance * (box.high - box.low).norm(); }
 };
 
 Facets facets_of(const Mesh& mesh) {
-  Facets s{outer_facets(mesh), {}, {}, Vec3::Constant(std::numeric_limits<double>::infinity()), {}};
-  s.high = -s.low;
+  Facets s{outer_facets(mesh), {}, {}, empty_box()};
   for (const OuterFacet& f : s.facets) {
-    const int corners = f.nodes[3] < 0 ? 3 : 4;
-    Vec3 x[4], middle = Vec3::Zero();
-    for (int c = 0; c < corners; ++c) {
+    Vec3 x[4];
+    for (int c = 0; c < corners_of(f.nodes); ++c) {
       x[c] = mesh.nodes.row(f.nodes[c]).transpose();
-      middle += x[c] / corners;
-      s.low = s.low.cwiseMin(x[c]);
-      s.high = s.high.cwiseMax(x[c]);
+      add_to(s.box, x[c]);
     }
-    s.middle.push_back(middle);
-    s.normal.push_back(corners == 3 ? (x[1] - x[0]).cross(x[2] - x[0]).normalized()
-                                    : (x[2] - x[0]).cross(x[3] - x[1]).normalized());
+    s.middle.push_back(middle_of(mesh, f.nodes));
+    s.normal.push_back(corners_of(f.nodes) == 3 ? (x[1] - x[0]).cross(x[2] - x[0]).normalized()
+                                                : (x[2] - x[0]).cross(x[3] - x[1]).normalized());
   }
   return s;
 }
@@ -72,38 +69,20 @@ Miss miss_of(const PatchRule::Facing& facing, const Facets& s) {
   };
 }
 
-/// Which of the facets `in` are connected with `first` through edges.
-std::vector<char> piece_with(std::size_t first, const std::vector<char>& in, const std::vector<OuterFacet>& facets) {
-  std::vector<std::pair<std::pair<int, int>, std::size_t>> edges;  // and a facet that has it
-  for (std::size_t f = 0; f < facets.size(); ++f) {
-    const auto& n = facets[f].nodes;
-    const int corners = n[3] < 0 ? 3 : 4;
-    for (int c = 0; in[f] && c < corners; ++c) edges.emplace_back(std::minmax(n[c], n[(c + 1) % corners]), f);
-  }
-  std::sort(edges.begin(), edges.end());
-  std::vector<char> piece(facets.size(), 0);
-  std::vector<std::size_t> todo = {first};
-  piece[first] = 1;
-  while (!todo.empty()) {
-    const auto& n = facets[todo.back()].nodes;
-    todo.pop_back();
-    const int corners = n[3] < 0 ? 3 : 4;
-    for (int c = 0; c < corners; ++c) {
-      const std::pair<int, int> edge = std::minmax(n[c], n[(c + 1) % corners]);
-      for (auto it = std::lower_bound(edges.begin(), edges.end(), std::pair(edge, std::size_t{0}));
-           it != edges.end() && it->first == edge; ++it)
-        if (!std::exchange(piece[it->second], 1)) todo.push_back(it->second);
-    }
-  }
-  return piece;
-}
-
+/// Facets of `near` by edges from the nearest one.
 Miss miss_of(const PatchRule::Near& near, const Facets& s, const Mesh& mesh) {
   const FacetTree::Nearest nearest = FacetTree(mesh, s.facets).nearest(near.point);
-  std::vector<char> in(s.facets.size());
-  for (std::size_t f = 0; f < in.size(); ++f) in[f] = (s.middle[f] - nearest.point).norm() <= near.radius + s.slack();
-  in[nearest.facet] = 1;
-  return [piece = piece_with(nearest.facet, in, s.facets)](std::size_t f) { return piece[f] ? 0.0 : 1.0; };
+  std::vector<std::pair<std::pair<int, int>, int>> edges;  // and a facet that has it
+  for (std::size_t f = 0; f < s.facets.size(); ++f) {
+    if (f != nearest.facet && (s.middle[f] - nearest.point).norm() > near.radius + s.slack()) continue;
+    for (int c = 0; c < corners_of(s.facets[f].nodes); ++c)
+      edges.emplace_back(edge_of(s.facets[f].nodes, c), static_cast<int>(f));
+  }
+  UnitedNumbers piece(s.facets.size());
+  unite_by_key(std::move(edges), piece);
+  return [piece, first = piece.of(static_cast<int>(nearest.facet))](std::size_t f) mutable {
+    return piece.of(static_cast<int>(f)) == first ? 0.0 : 1.0;
+  };
 }
 
 struct Condition {
@@ -144,7 +123,8 @@ std::string account_of(const Condition& condition, const Facets& s) {
       rule.where,
       fmt::format("patch: '{}' selects no facet of the surface: {} (the body spans ({:.6g}, {:.6g}, {:.6g}) to "
                   "({:.6g}, {:.6g}, {:.6g}) m)",
-                  rule.name, fmt::join(accounts, "; "), s.low[0], s.low[1], s.low[2], s.high[0], s.high[1], s.high[2]));
+                  rule.name, fmt::join(accounts, "; "), s.box.low[0], s.box.low[1], s.box.low[2], s.box.high[0],
+                  s.box.high[1], s.box.high[2]));
 }
 
 Patch selected(const PatchRule& rule, const Facets& s, const Mesh& mesh) {
@@ -156,10 +136,6 @@ Patch selected(const PatchRule& rule, const Facets& s, const Mesh& mesh) {
   if (patch.facets.empty()) refuse_empty(rule, conditions, s);
   return patch;
 }
-
-}  // namespace
-
-namespace {
 
 void refuse_taken(const PatchRule& rule, const std::vector<std::string>& names) {
   if (std::find(names.begin(), names.end(), rule.name) == names.end()) return;

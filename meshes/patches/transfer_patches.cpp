@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "meshes/facets.h"
 #include "meshes/locate/facet_tree.h"
 
 namespace springproof {
@@ -11,23 +12,13 @@ namespace {
 std::vector<std::pair<std::array<int, 4>, std::size_t>> patches_by_facet(const Mesh& body) {
   std::vector<std::pair<std::array<int, 4>, std::size_t>> list;
   for (std::size_t p = 0; p < body.patches.size(); ++p)
-    for (std::array<int, 4> facet : body.patches[p].facets) {
-      std::sort(facet.begin(), facet.end());
-      list.emplace_back(facet, p);
-    }
+    for (const auto& facet : body.patches[p].facets) list.emplace_back(ascending(facet), p);
   std::sort(list.begin(), list.end());
   return list;
 }
 
-Vec3 middle_of(const Mesh& mesh, const OuterFacet& facet) {
-  const int corners = facet.nodes[3] < 0 ? 3 : 4;
-  Vec3 middle = Vec3::Zero();
-  for (int c = 0; c < corners; ++c) middle += mesh.nodes.row(facet.nodes[c]).transpose() / corners;
-  return middle;
-}
-
 const OuterFacet& nearest_to(const Vec3& p, const Mesh& mesh, const std::vector<OuterFacet>& facets) {
-  const auto distance = [&](const OuterFacet& f) { return (middle_of(mesh, f) - p).squaredNorm(); };
+  const auto distance = [&](const OuterFacet& f) { return (middle_of(mesh, f.nodes) - p).squaredNorm(); };
   return *std::min_element(facets.begin(), facets.end(),
                            [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
 }
@@ -42,7 +33,7 @@ std::vector<std::string> transfer_patches(const Mesh& from, const std::vector<Ou
   const FacetTree tree(from, facets);
   const std::vector<OuterFacet> onto = outer_facets(to);
   for (const OuterFacet& facet : onto) {
-    const auto& key = facets[tree.nearest(middle_of(to, facet)).facet].key;
+    const auto& key = facets[tree.nearest(middle_of(to, facet.nodes)).facet].key;
     for (auto it = std::lower_bound(patches.begin(), patches.end(), std::pair(key, std::size_t{0}));
          it != patches.end() && it->first == key; ++it)
       to.patches[first + it->second].facets.push_back(facet.nodes);

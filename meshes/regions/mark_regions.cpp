@@ -41,11 +41,8 @@ std::vector<std::array<int, 3>> facets_on(const Border& sphere, std::uint8_t num
   std::map<std::array<int, 3>, int> cells;
   for (std::size_t c = 0; c < cut.cells(); ++c) {
     if (cut.materials()[c] != number) continue;
-    for (int without = 0; without < 4; ++without) {
-      std::array<int, 3> facet{};
-      for (int i = 0, n = 0; i < 4; ++i)
-        if (i != without) facet[n++] = cut.tetrahedra()[c][i];
-      std::sort(facet.begin(), facet.end());
+    for (const auto& [x, y, z, none] : facets_of(cut.tetrahedra()[c])) {
+      const std::array<int, 3> facet = ascending(std::array{x, y, z});
       const auto is_on = [&](int n) { return std::abs(sphere.depth(cut.points()[n])) <= slack; };
       if (std::all_of(facet.begin(), facet.end(), is_on)) ++cells[facet];
     }

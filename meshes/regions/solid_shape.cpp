@@ -5,24 +5,14 @@
 #include <map>
 #include <numbers>
 
+#include "meshes/facets.h"
 #include "meshes/mesher/mesher.h"
-#include "meshes/volume.h"
 
 namespace springproof {
 namespace {
 
 constexpr double on_side = 1e-6;       // barycentric: a point so near to a side is on it
 constexpr double sharp_below = 0.766;  // cosine of 40 degrees
-
-FacetTree tree_of(const Surface& surface) {
-  Mesh mesh;
-  mesh.nodes.resize(static_cast<Eigen::Index>(surface.points.size()), 3);
-  for (std::size_t n = 0; n < surface.points.size(); ++n)
-    mesh.nodes.row(static_cast<Eigen::Index>(n)) = surface.points[n].transpose();
-  std::vector<OuterFacet> facets;
-  for (const auto& [a, b, c] : surface.triangles) facets.push_back({{}, {a, b, c, -1}, Vec3::Zero()});
-  return {mesh, facets};
-}
 
 double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
@@ -33,11 +23,6 @@ Vec3 barycentric(const std::array<Vec3, 3>& x, const Vec3& point) {
   for (int i = 0; i < 3; ++i)
     weights[i] = (x[(i + 2) % 3] - x[(i + 1) % 3]).cross(point - x[(i + 1) % 3]).dot(normal) / normal.squaredNorm();
   return weights;
-}
-
-Vec3 closest_on_edge(const std::array<Vec3, 2>& edge, const Vec3& point) {
-  const Vec3 along = edge[1] - edge[0];
-  return edge[0] + std::clamp((point - edge[0]).dot(along) / along.squaredNorm(), 0.0, 1.0) * along;
 }
 
 }  // namespace
@@ -77,7 +62,7 @@ Enclosed::Enclosed(const Surface& surface)
       box_(bounding_box(surface)),
       of_points_(surface.points.size(), Vec3::Zero()),
       beyond_(surface.triangles.size()),
-      tree_(tree_of(surface)) {
+      tree_(surface.points, surface.triangles) {
   std::map<std::array<int, 2>, std::array<int, 2>> sides;  // from, to: facet, side
   for (std::size_t f = 0; f < surface.triangles.size(); ++f) {
     const auto& t = surface.triangles[f];
@@ -117,7 +102,7 @@ double Enclosed::depth(const Vec3& point) const {
 std::optional<Vec3> Enclosed::on_sharp_edge(const Vec3& point, double within) const {
   std::optional<Vec3> best;
   for (const auto& edge : sharp_)
-    if (const Vec3 at = closest_on_edge(edge, point); (at - point).norm() <= within) {
+    if (const Vec3 at = closest_point(point, edge[0], edge[1]); (at - point).norm() <= within) {
       within = (at - point).norm();
       best = at;
     }

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "meshes/facets.h"
 #include "meshes/locate/facet_tree.h"
 #include "meshes/patches/rule_region.h"
 #include "meshes/surface/surface.h"
@@ -54,14 +55,10 @@ struct RegionBorder {
 /// Whether a cell may reach into a closed surface; of a hexahedron by its corners and middle alone.
 template <std::size_t n>
 bool reaches_into(const Enclosed& surface, const std::array<Vec3, n>& corners, double slack) {
-  const Box& box = surface.box();
-  Vec3 middle = Vec3::Zero(), low = corners[0], high = corners[0];
-  for (const Vec3& x : corners) {
-    middle += x / n;
-    low = low.cwiseMin(x);
-    high = high.cwiseMax(x);
-  }
-  if (((low - box.high).array() > slack).any() || ((box.low - high).array() > slack).any()) return false;
+  const Box &box = surface.box(), own = box_of(corners);
+  Vec3 middle = Vec3::Zero();
+  for (const Vec3& x : corners) middle += x / n;
+  if (((own.low - box.high).array() > slack).any() || ((box.low - own.high).array() > slack).any()) return false;
   double farthest = 0;
   for (const Vec3& x : corners) farthest = std::max(farthest, (x - middle).norm());
   return surface.depth(middle) + (n == 4 ? farthest : 0) > slack ||
@@ -81,12 +78,8 @@ struct SolidShape {
       if (border.surface) return reaches_into(*border.surface, corners, slack);
       if (!border.is_sphere())
         return std::any_of(corners.begin(), corners.end(), [&](const Vec3& x) { return border.depth(x) > slack; });
-      Vec3 low = corners[0], high = low;
-      for (const Vec3& x : corners) {
-        low = low.cwiseMin(x);
-        high = high.cwiseMax(x);
-      }
-      return border.depth(border.plain.point.cwiseMax(low).cwiseMin(high)) > slack;
+      const Box box = box_of(corners);
+      return border.depth(border.plain.point.cwiseMax(box.low).cwiseMin(box.high)) > slack;
     });
   }
 

@@ -1,4 +1,4 @@
-#include "meshes/surface/obj.h"
+#include "meshes/surface/surface_files.h"
 
 #include <fmt/format.h>
 
@@ -99,10 +99,8 @@ class ObjReader {
 
 }  // namespace
 
-Surface parse_obj(std::string_view text, const std::filesystem::path& file) { return ObjReader(text, file).read(); }
-
 Surface read_obj(const std::filesystem::path& file) {
-  return parse_obj(read_named_file(file, "an OBJ file, NAME.obj"), file);
+  return ObjReader(read_named_file(file, "an OBJ file, NAME.obj"), file).read();
 }
 
 }  // namespace springproof

@@ -1,4 +1,4 @@
-#include "meshes/surface/ply.h"
+#include "meshes/surface/surface_files.h"
 
 #include <CGAL/IO/PLY.h>
 #include <CGAL/Simple_cartesian.h>

@@ -1,5 +1,5 @@
 // Apart from the parser, which also runs in a browser.
-#include "meshes/surface/stl.h"
+#include "meshes/surface/surface_files.h"
 #include "problem/files/files.h"
 
 namespace springproof {

@@ -1,4 +1,4 @@
-#include "meshes/surface/stl.h"
+#include "meshes/surface/surface_files.h"
 
 #include <fmt/format.h>
 

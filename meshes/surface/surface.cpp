@@ -1,7 +1,8 @@
 #include "meshes/surface/surface.h"
 
 #include <Eigen/Geometry>
-#include <limits>
+
+#include "meshes/facets.h"
 
 namespace springproof {
 
@@ -43,13 +44,9 @@ double area(const Surface& surface) {
 }
 
 Box bounding_box(const Surface& surface) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  Box box = {Vec3::Constant(infinity), Vec3::Constant(-infinity)};
+  Box box = empty_box();
   for (const auto& triangle : surface.triangles)
-    for (const int p : triangle) {
-      box.low = box.low.cwiseMin(surface.points[p]);
-      box.high = box.high.cwiseMax(surface.points[p]);
-    }
+    for (const int p : triangle) add_to(box, surface.points[p]);
   return box;
 }
 

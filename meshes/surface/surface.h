@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "meshes/box.h"
 #include "meshes/locate/outer_facets.h"
 #include "problem/vector.h"
 
@@ -16,12 +17,6 @@ struct Surface {
   std::vector<Vec3> points;                            ///< [m], or in the units of the file it was read from
   std::vector<std::array<int, 3>> triangles;           ///< numbers of points
   std::map<std::string, std::vector<int>> parts = {};  ///< that the file names: numbers of triangles
-};
-
-/// Box with edges along the axes.
-struct Box {
-  Vec3 low;   ///< lowest corner
-  Vec3 high;  ///< highest corner
 };
 
 /// Outer facets of a mesh [m], quadrilaterals cut into two triangles; its points are all nodes.

@@ -1,5 +1,5 @@
-// The one file that includes CGAL, whose polygon mesh processing is under the GPL.
-#include "meshes/surface/surface_cgal.h"
+// The one file that includes CGAL's polygon mesh processing, which is under the GPL.
+#include "meshes/surface/surface_check.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/detect_features.h>
@@ -19,7 +19,6 @@
 #include <stdexcept>
 
 #include "meshes/surface/balanced.h"
-#include "meshes/surface/surface_check.h"
 
 namespace springproof {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "meshes/surface/surface_cgal.h"
+#include "meshes/facets.h"
 #include "meshes/surface/surface_repair.h"
 #include "problem/system/input_error.h"
 
@@ -170,11 +170,11 @@ void flatten(Check& check) {
 }
 
 Vec3 middle_of_the_smaller(const Surface& surface, const std::pair<int, int>& pair) {
-  const auto box_of = [&](int facet) {
+  const auto box_around = [&](int facet) {
     const auto& [a, b, c] = surface.triangles[facet];
-    return bounding_box({{surface.points[a], surface.points[b], surface.points[c]}, {{0, 1, 2}}});
+    return box_of(std::array{surface.points[a], surface.points[b], surface.points[c]});
   };
-  const Box f = box_of(pair.first), g = box_of(pair.second);
+  const Box f = box_around(pair.first), g = box_around(pair.second);
   const Box& smaller = (f.high - f.low).norm() < (g.high - g.low).norm() ? f : g;
   return (smaller.low + smaller.high) / 2;
 }

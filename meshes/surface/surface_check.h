@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "meshes/surface/surface.h"
@@ -24,6 +25,10 @@ struct CheckedSurface {
 ///         one side, points where parts only touch, facets that cut each other, several shells but for those of
 ///         cavities, no volume.
 CheckedSurface check_surface(const Surface& raw, const std::string& name);
+
+/// Pairs of facets of a welded surface that cut or touch each other elsewhere than at common points and edges; exact.
+/// Stops at `most` pairs.  No facet may be without area.
+std::vector<std::pair<int, int>> intersecting_facets(const Surface& surface, unsigned most);
 
 /// The same body (surface as of check_surface) with no more facets than triangles of this edge would be, where it has
 /// more than twice as many: flat faces and creases stay, noise is averaged, the volume changes by less than 0.1 %.

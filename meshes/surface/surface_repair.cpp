@@ -7,6 +7,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include "meshes/facets.h"
+
 namespace springproof {
 namespace {
 
@@ -64,11 +66,7 @@ class PointGrid {
 std::vector<bool> repeated(const std::vector<Triangle>& triangles) {
   std::vector<std::pair<Triangle, int>> sorted;
   sorted.reserve(triangles.size());
-  for (std::size_t f = 0; f < triangles.size(); ++f) {
-    Triangle corners = triangles[f];
-    std::sort(corners.begin(), corners.end());
-    sorted.emplace_back(corners, static_cast<int>(f));
-  }
+  for (std::size_t f = 0; f < triangles.size(); ++f) sorted.emplace_back(ascending(triangles[f]), static_cast<int>(f));
   std::sort(sorted.begin(), sorted.end());
   std::vector<bool> again(triangles.size(), false);
   for (std::size_t i = 1; i < sorted.size(); ++i)

@@ -3,11 +3,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <tuple>
 
-#include "meshes/united_numbers.h"
+#include "meshes/facets.h"
 
 namespace springproof {
 
@@ -63,21 +62,16 @@ std::vector<Hole> holes(const Surface& surface, const std::vector<Side>& sides) 
     open.push_back(edge[0]);
     sets.unite(edge[0].low, edge[0].high);
   });
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   std::vector<int> hole_of(surface.points.size(), -1);
   std::vector<Hole> found;
   for (const Side& side : open) {
     int& hole = hole_of[sets.of(side.low)];
     if (hole < 0) {
       hole = static_cast<int>(found.size());
-      found.push_back({0, surface.points[side.low], {Vec3::Constant(infinity), Vec3::Constant(-infinity)}});
+      found.push_back({0, surface.points[side.low], empty_box()});
     }
     ++found[hole].edges;
-    for (const int p : {side.low, side.high}) {
-      Box& box = found[hole].box;
-      box.low = box.low.cwiseMin(surface.points[p]);
-      box.high = box.high.cwiseMax(surface.points[p]);
-    }
+    for (const int p : {side.low, side.high}) add_to(found[hole].box, surface.points[p]);
   }
   return found;
 }

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "meshes/facets.h"
+
 namespace springproof {
 namespace {
 
@@ -13,11 +15,6 @@ constexpr double least_fraction = 1e-3;                    // of a cube, for a p
 
 double volume_of(const TetrahedronCorners& t) {
   return std::abs((t[1] - t[0]).cross(t[2] - t[0]).dot(t[3] - t[0])) / 6;
-}
-
-std::array<int, 3> ascending(std::array<int, 3> nodes) {
-  std::sort(nodes.begin(), nodes.end());
-  return nodes;
 }
 
 }  // namespace
@@ -70,7 +67,7 @@ void BodyParts::list_facets() {
   for (std::size_t t = 0; t < body_.tetrahedra.size(); ++t)
     for (int f = 0; f < 4; ++f) {
       const Tetrahedron& n = body_.tetrahedra[t];
-      facets_.push_back({ascending({n[f], n[(f + 1) % 4], n[(f + 2) % 4]}), static_cast<int>(t)});
+      facets_.push_back({ascending(std::array{n[f], n[(f + 1) % 4], n[(f + 2) % 4]}), static_cast<int>(t)});
     }
   std::sort(facets_.begin(), facets_.end());
 }

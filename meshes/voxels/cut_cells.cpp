@@ -98,10 +98,9 @@ Vec3 CutBody::centre(int cell) const {
 std::array<double, 8> CutBody::weights(int cell, const Vec3& point) const {
   const Vec3 xi = (point - centre(cell)) / (grid.edge * cells[cell].size);
   std::array<double, 8> w;
-  for (int n = 0; n < 8; ++n) {
-    w[n] = 1;
+  w.fill(1);
+  for (int n = 0; n < 8; ++n)
     for (int d = 0; d < 3; ++d) w[n] *= 0.5 + (hexahedron_corners[n][d] ? xi[d] : -xi[d]);
-  }
   return w;
 }
 
@@ -171,13 +170,12 @@ void add_triangle(const TriangleCorners& part, const CutBody& body, PatchInCell&
   const Vec3 normal = l * l * (part[1] - part[0]).cross(part[2] - part[0]) / 2;
   for (const TrianglePoint& q : rule) {
     const Vec3 x = body.grid.origin + l * (q.at[0] * part[0] + q.at[1] * part[1] + q.at[2] * part[2]);
-    const Vec3 from_centre = x - body.centre(to.cell);
     const std::array<double, 8> N = body.weights(to.cell, x);
     for (int n = 0; n < 8; ++n) {
       const double area = q.weight * N[n] * normal.norm();
       to.area[n] += area;
       to.normal[n] += q.weight * N[n] * normal;
-      to.moment[n] += area * from_centre;
+      to.moment[n] += area * (x - body.centre(to.cell));
     }
   }
 }
@@ -196,8 +194,7 @@ void add_patches(const Mesh& body, const BodyParts& parts, const BodyPieces& pie
                             add_triangle(part, out, in_cell.try_emplace(cell, patch_in(cell)).first->second);
                           });
     }
-    auto& list = out.patches[patch.name];
-    for (auto& [cell, piece] : in_cell) list.push_back(piece);
+    for (auto& list = out.patches[patch.name]; const auto& [cell, piece] : in_cell) list.push_back(piece);
   }
 }
 

@@ -16,16 +16,19 @@ using TriangleCorners = std::array<Vec3, 3>;
 /// Corners within this distance of a plane lie on it, in edges of the cubes.
 inline constexpr double lattice_tolerance = 1e-9;
 
+/// Where the line through a and b has coordinate `at` of an axis.
+inline Vec3 cut_point(const Vec3& a, const Vec3& b, int axis, double at) {
+  Vec3 p = a + (at - a[axis]) / (b[axis] - a[axis]) * (b - a);
+  p[axis] = at;
+  return p;
+}
+
 /// Cuts a simplex at coordinate `at` of an axis; calls below(part) and above(part) for simplices that make it up.
 template <class Below, class Above>
 void cut_at(const TetrahedronCorners& t, int axis, double at, const Below& below, const Above& above) {
   std::array<Vec3, 4> x = t;
   std::sort(x.begin(), x.end(), [&](const Vec3& a, const Vec3& b) { return a[axis] < b[axis]; });
-  const auto on = [&](const Vec3& a, const Vec3& b) -> Vec3 {
-    Vec3 p = a + (at - a[axis]) / (b[axis] - a[axis]) * (b - a);
-    p[axis] = at;
-    return p;
-  };
+  const auto on = [&](const Vec3& a, const Vec3& b) { return cut_point(a, b, axis, at); };
   const auto wedge = [](const TriangleCorners& a, const TriangleCorners& b, const auto& act) {
     act(TetrahedronCorners{a[0], a[1], a[2], b[2]});
     act(TetrahedronCorners{a[0], a[1], b[1], b[2]});
@@ -63,11 +66,7 @@ void cut_at(const TriangleCorners& t, int axis, double at, const Below& below, c
   const int low = *std::min_element(side.begin(), side.end()), high = *std::max_element(side.begin(), side.end());
   if (low >= 0) return above(t);
   if (high <= 0) return below(t);
-  const auto on = [&](const Vec3& a, const Vec3& b) -> Vec3 {
-    Vec3 p = a + (at - a[axis]) / (b[axis] - a[axis]) * (b - a);
-    p[axis] = at;
-    return p;
-  };
+  const auto on = [&](const Vec3& a, const Vec3& b) { return cut_point(a, b, axis, at); };
   const auto emit = [&](const TriangleCorners& part, int where) { where < 0 ? below(part) : above(part); };
   for (int i = 0; i < 3; ++i)
     if (side[i] == 0) {  // through a corner

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numeric>
 #include <stdexcept>
 #include <utility>
 
+#include "meshes/box.h"
 #include "meshes/locate/tetrahedron_locator.h"
 #include "meshes/patches/transfer_patches.h"
+#include "meshes/united_numbers.h"
 #include "meshes/voxels/scan_lines.h"
 
 namespace springproof {
@@ -20,18 +20,11 @@ constexpr double tolerance = 1e-6;  // of an edge
 constexpr double most_cubes = 1e9;  // in the box
 constexpr double most_left_out = 0.02;
 
-struct Extent {
-  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
-};
-
-Extent extent_of(const Mesh& body) {
-  Extent box;
+Box extent_of(const Mesh& body) {
+  Box box = empty_box();
   const auto add = [&](const auto& cells) {
     for (const auto& cell : cells)
-      for (const int n : cell) {
-        box.low = box.low.cwiseMin(body.nodes.row(n).transpose());
-        box.high = box.high.cwiseMax(body.nodes.row(n).transpose());
-      }
+      for (const int n : cell) add_to(box, body.nodes.row(n).transpose());
   };
   add(body.hexahedra);
   add(body.tetrahedra);
@@ -52,7 +45,7 @@ void check_grid(const VoxelGrid& grid, const Mesh& body) {
   if (*std::min_element(grid.cells.begin(), grid.cells.end()) < 1)
     throw std::invalid_argument("voxels: the grid has no cells");
   check_edge(grid.edge, double(grid.cells[0]) * grid.cells[1] * grid.cells[2]);
-  const Extent body_box = extent_of(body);
+  const Box body_box = extent_of(body);
   const Vec3 slack = Vec3::Constant(2 * tolerance * grid.edge);
   const Vec3 end = grid.origin + grid.edge * Vec3(grid.cells[0], grid.cells[1], grid.cells[2]);
   if ((body_box.low.array() >= (grid.origin - slack).array()).all() &&
@@ -84,34 +77,28 @@ std::size_t cubes_in(const std::vector<RowRun>& runs) {
   return sum;
 }
 
-/// Which piece each run belongs to, as the number of one of its runs: runs are connected where cubes share a face.
-std::vector<int> pieces_of(const std::vector<RowRun>& runs, const std::array<int, 3>& cells) {
-  std::vector<int> parent(runs.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int r) {
-    while (parent[r] != r) r = parent[r] = parent[parent[r]];
-    return r;
-  };
+/// The pieces that the runs belong to: runs are connected where cubes share a face.
+UnitedNumbers pieces_of(const std::vector<RowRun>& runs, const std::array<int, 3>& cells) {
+  UnitedNumbers piece(runs.size());
   const auto join_rows = [&](int distance, bool over_layers) {  // of rows: to the next in y, or in z
     for (std::size_t a = 0, b = 0; a < runs.size(); ++a) {
       if (!over_layers && (runs[a].row + 1) % cells[1] == 0) continue;  // the last row of its layer
       const int row = runs[a].row + distance;
       while (b < runs.size() && (runs[b].row < row || (runs[b].row == row && runs[b].end <= runs[a].begin))) ++b;
       for (std::size_t c = b; c < runs.size() && runs[c].row == row && runs[c].begin < runs[a].end; ++c)
-        parent[root(static_cast<int>(c))] = root(static_cast<int>(a));
+        piece.unite(static_cast<int>(c), static_cast<int>(a));
     }
   };
   join_rows(1, false);
   join_rows(cells[1], true);
-  for (std::size_t r = 0; r < runs.size(); ++r) parent[r] = root(static_cast<int>(r));
-  return parent;
+  return piece;
 }
 
 /// Drops all but the largest piece.
 void keep_one_piece(std::vector<RowRun>& runs, const VoxelGrid& grid, std::vector<std::string>& notes) {
-  const std::vector<int> piece = pieces_of(runs, grid.cells);
+  UnitedNumbers piece = pieces_of(runs, grid.cells);
   std::vector<std::size_t> size(runs.size(), 0);
-  for (std::size_t r = 0; r < runs.size(); ++r) size[piece[r]] += runs[r].end - runs[r].begin;
+  for (std::size_t r = 0; r < runs.size(); ++r) size[piece.of(static_cast<int>(r))] += runs[r].end - runs[r].begin;
   const auto largest = std::max_element(size.begin(), size.end());
   const auto pieces = std::count_if(size.begin(), size.end(), [](std::size_t n) { return n > 0; });
   if (pieces == 1) return;
@@ -126,7 +113,7 @@ void keep_one_piece(std::vector<RowRun>& runs, const VoxelGrid& grid, std::vecto
   const int kept = static_cast<int>(largest - size.begin());
   std::size_t next = 0;
   for (std::size_t r = 0; r < runs.size(); ++r)
-    if (piece[r] == kept) runs[next++] = runs[r];
+    if (piece.of(static_cast<int>(r)) == kept) runs[next++] = runs[r];
   runs.resize(next);
 }
 
@@ -257,7 +244,7 @@ std::array<int, 3> cube_at(const VoxelGrid& grid, const Vec3& point) {
 
 VoxelGrid voxel_grid(const Mesh& body, double edge) {
   if (body.hexahedra.empty() && body.tetrahedra.empty()) throw std::invalid_argument("voxels: the body has no cells");
-  const Extent box = extent_of(body);
+  const Box box = extent_of(body);
   const Vec3 counts =
       ((box.high - box.low) / edge).unaryExpr([](double n) { return std::max(1.0, std::ceil(n - tolerance)); });
   check_edge(edge, counts.prod());

@@ -9,7 +9,9 @@
 #include <optional>
 #include <stdexcept>
 
+#include "meshes/locate/outer_facets.h"
 #include "msm/algebra/dense.h"
+#include "msm/embedding/surface_shares.h"
 #include "msm/topology/point_cells.h"
 
 namespace springproof {
@@ -32,26 +34,13 @@ struct Neighbourhood {
   /// Nodes within `radius` of p, in order of number.
   std::vector<int> near(const Vec3& p, double radius) const {
     std::vector<int> found;
-    cells.any_near(
-        p,
-        [&](int n) {
-          if ((X.row(n).transpose() - p).norm() <= radius) found.push_back(n);
-          return false;
-        },
-        static_cast<int>(radius / edge) + 1);
+    cells.for_near(p, static_cast<int>(radius / edge) + 1, [&](int n) {
+      if ((X.row(n).transpose() - p).norm() <= radius) found.push_back(n);
+    });
     std::sort(found.begin(), found.end());
     return found;
   }
 };
-
-std::vector<std::vector<int>> neighbours_of(const Network& network) {
-  std::vector<std::vector<int>> neighbours(network.nodes());
-  for (const Spring& s : network.springs) {
-    neighbours[s.i].push_back(s.j);
-    neighbours[s.j].push_back(s.i);
-  }
-  return neighbours;
-}
 
 /// Those of `nodes` (ascending) that are connected, through springs among them, with the one nearest to p: nodes across
 /// a gap in the body are excluded from the fit at p.
@@ -59,12 +48,9 @@ std::vector<int> connected_to_nearest(const NodalVectors& X, const std::vector<s
                                       const std::vector<int>& nodes, const Vec3& p) {
   if (nodes.empty()) return {};
   const auto distance = [&](int n) { return (X.row(n).transpose() - p).squaredNorm(); };
-  std::vector<int> found = {
-      *std::min_element(nodes.begin(), nodes.end(), [&](int a, int b) { return distance(a) < distance(b); })};
-  for (std::size_t i = 0; i < found.size(); ++i)
-    for (const int n : neighbours[found[i]])
-      if (std::binary_search(nodes.begin(), nodes.end(), n) && std::find(found.begin(), found.end(), n) == found.end())
-        found.push_back(n);
+  const auto nearest =
+      std::min_element(nodes.begin(), nodes.end(), [&](int a, int b) { return distance(a) < distance(b); });
+  std::vector<int> found = connected_with(*nearest, nodes, neighbours);
   std::sort(found.begin(), found.end());
   return found;
 }
@@ -89,18 +75,6 @@ std::optional<Eigen::VectorXd> least_squares(const NodalVectors& X, const std::v
   return bell.cwiseProduct(basis * symmetric_solve(moments, Eigen::VectorXd::Unit(terms, 0)));
 }
 
-/// Distance from p to the triangle a b c.
-double distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const auto to_segment = [&](const Vec3& s, const Vec3& t) {
-    const Vec3 d = t - s;
-    return (p - s - std::clamp(d.dot(p - s) / d.squaredNorm(), 0.0, 1.0) * d).norm();
-  };
-  const Vec3 n = (b - a).cross(c - a).normalized(), q = p - n.dot(p - a) * n;
-  const bool inside =
-      n.dot((b - a).cross(q - a)) >= 0 && n.dot((c - b).cross(q - b)) >= 0 && n.dot((a - c).cross(q - c)) >= 0;
-  return inside ? std::abs(n.dot(p - a)) : std::min({to_segment(a, b), to_segment(b, c), to_segment(c, a)});
-}
-
 /// Network nodes within `grip` of a patch, whose corners are at point(number).
 template <class Point>
 std::vector<int> held_by(const Patch& patch, const Point& point, const Network& network,
@@ -115,7 +89,8 @@ std::vector<int> held_by(const Patch& patch, const Point& point, const Network& 
     for (int i = 0; i < corners; ++i) radius = std::max(radius, (x[i] - middle).norm());
     for (int n : neighbourhood.near(middle, radius + grip)) {
       const Vec3 p = network.X.row(n).transpose();
-      if (distance(p, x[0], x[1], x[2]) <= grip || (corners == 4 && distance(p, x[2], x[3], x[0]) <= grip)) held[n] = 1;
+      const auto is_near = [&](int a, int b, int c) { return (closest_point(p, x[a], x[b], x[c]) - p).norm() <= grip; };
+      if (is_near(0, 1, 2) || (corners == 4 && is_near(2, 3, 0))) held[n] = 1;
     }
   }
   std::vector<int> nodes;

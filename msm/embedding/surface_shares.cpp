@@ -12,6 +12,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "meshes/facets.h"
 #include "meshes/volume.h"
 #include "msm/algebra/dense.h"
 #include "msm/topology/point_cells.h"
@@ -47,14 +48,10 @@ struct SurfaceInterpolation {
         spacing(std::cbrt(n.volume.sum() / n.nodes())),
         cells(region.lower, region.upper, spacing, false),
         at_surface(n.nodes(), 0),
-        neighbours(n.nodes()) {
+        neighbours(neighbours_of(n)) {
     for (int node = 0; node < n.nodes(); ++node) cells.add(n.X.row(node).transpose());
     for (const auto& t : region.surface_triangles)
       mark({region.surface_points[t[0]], region.surface_points[t[1]], region.surface_points[t[2]]});
-    for (const Spring& s : n.springs) {
-      neighbours[s.i].push_back(s.j);
-      neighbours[s.j].push_back(s.i);
-    }
   }
 
   /// Marks the nodes on a triangle.
@@ -63,10 +60,9 @@ struct SurfaceInterpolation {
     const double width = piece_width * spacing;
     for_pieces(triangle[0], triangle[1], triangle[2], width, [&](const Vec3& a, const Vec3& b, const Vec3& c) {
       const Vec3 middle = (a + b + c) / 3;
-      cells.any_near(middle, [&](int n) {
+      cells.for_near(middle, 1, [&](int n) {
         const bool in_plane = std::abs((network.X.row(n).transpose() - a).dot(normal)) <= on_surface * spacing;
         at_surface[n] = at_surface[n] || (in_plane && distance(n, middle) <= width);
-        return false;
       });
     });
   }
@@ -76,25 +72,16 @@ struct SurfaceInterpolation {
   /// Nodes within `reach` [m] of p, nearest first, that are connected with the nearest surface node through such nodes.
   std::vector<int> connected(const Vec3& p, double reach) const {
     std::vector<std::pair<double, int>> near;
-    cells.any_near(
-        p,
-        [&](int n) {
-          if (const double d = distance(n, p); d <= reach) near.emplace_back(d, n);
-          return false;
-        },
-        static_cast<int>(reach / spacing) + 1);
+    cells.for_near(p, static_cast<int>(reach / spacing) + 1, [&](int n) {
+      if (const double d = distance(n, p); d <= reach) near.emplace_back(d, n);
+    });
     std::sort(near.begin(), near.end());
     const auto start = std::find_if(near.begin(), near.end(), [&](const auto& at) { return at_surface[at.second]; });
     if (start == near.end()) return {};
     std::vector<int> open;
     for (const auto& at : near) open.push_back(at.second);
     std::sort(open.begin(), open.end());
-    std::vector<int> found = {start->second};
-    for (std::size_t i = 0; i < found.size(); ++i)
-      for (const int n : neighbours[found[i]])
-        if (std::binary_search(open.begin(), open.end(), n) && std::find(found.begin(), found.end(), n) == found.end())
-          found.push_back(n);
-    return found;
+    return connected_with(start->second, open, neighbours);
   }
 
   /// Moving least squares in the plane through p with normal n.
@@ -178,19 +165,15 @@ struct SurfaceInterpolation {
   std::array<int, 2> on_edge(const Vec3& p, const Vec3& along) const {
     std::array<int, 2> found = {-1, -1};
     std::array<double, 2> nearest = {edge_reach * spacing, edge_reach * spacing};
-    cells.any_near(
-        p,
-        [&](int n) {
-          const Vec3 d = network.X.row(n).transpose() - p;
-          const double at = d.dot(along);
-          const int side = at > 0;
-          if ((d - at * along).norm() <= on_surface * spacing && std::abs(at) <= nearest[side]) {
-            found[side] = n;
-            nearest[side] = std::abs(at);
-          }
-          return false;
-        },
-        static_cast<int>(edge_reach) + 1);
+    cells.for_near(p, static_cast<int>(edge_reach) + 1, [&](int n) {
+      const Vec3 d = network.X.row(n).transpose() - p;
+      const double at = d.dot(along);
+      const int side = at > 0;
+      if ((d - at * along).norm() <= on_surface * spacing && std::abs(at) <= nearest[side]) {
+        found[side] = n;
+        nearest[side] = std::abs(at);
+      }
+    });
     return found;
   }
 
@@ -245,8 +228,7 @@ std::vector<std::array<int, 2>> edges_of_planes(const Region& region) {
   std::map<std::array<int, 2>, std::vector<std::size_t>> at;  // edge -> triangles
   std::vector<Vec3> normal;
   for (const auto& t : region.surface_triangles) {
-    for (int c = 0; c < 3; ++c)
-      at[{std::min(t[c], t[(c + 1) % 3]), std::max(t[c], t[(c + 1) % 3])}].push_back(normal.size());
+    for (int c = 0; c < 3; ++c) at[ascending(std::array{t[c], t[(c + 1) % 3]})].push_back(normal.size());
     normal.push_back((point(t[1]) - point(t[0])).cross(point(t[2]) - point(t[0])).normalized());
   }
   std::vector<char> plane(normal.size(), 0);
@@ -273,7 +255,7 @@ struct SharpSides {
     const Vec3 normal = (point(facet[1]) - point(facet[0])).cross(point(facet[2]) - point(facet[0])).normalized();
     for (int c = 0; c < corners; ++c) {
       const int a = facet[c], b = facet[(c + 1) % corners];
-      if (std::binary_search(sharp.begin(), sharp.end(), std::array<int, 2>{std::min(a, b), std::max(a, b)}))
+      if (std::binary_search(sharp.begin(), sharp.end(), ascending(std::array{a, b})))
         interpolation.thin(point(a), point(b), normal, moment, unthinned, shares);
     }
   }
@@ -307,6 +289,25 @@ SurfaceShares surface_shares(const Region& region, const Network& network) {
   shares.area = std::move(whole.normal);
   meet_gauss(network.X, region.volume, shares.area);
   return shares;
+}
+
+std::vector<std::vector<int>> neighbours_of(const Network& network) {
+  std::vector<std::vector<int>> neighbours(network.nodes());
+  for (const Spring& s : network.springs) {
+    neighbours[s.i].push_back(s.j);
+    neighbours[s.j].push_back(s.i);
+  }
+  return neighbours;
+}
+
+std::vector<int> connected_with(int node, const std::vector<int>& nodes,
+                                const std::vector<std::vector<int>>& neighbours) {
+  std::vector<int> found = {node};
+  for (std::size_t i = 0; i < found.size(); ++i)
+    for (const int n : neighbours[found[i]])
+      if (std::binary_search(nodes.begin(), nodes.end(), n) && std::find(found.begin(), found.end(), n) == found.end())
+        found.push_back(n);
+  return found;
 }
 
 SurfaceShares vertex_shares(const Mesh& tetrahedra, const Network& network) {

@@ -27,4 +27,11 @@ SurfaceShares surface_shares(const Region& region, const Network& network);
 /// above at the sharp edges, but for those of faces too narrow to have nodes a spacing inwards.
 SurfaceShares vertex_shares(const Mesh& tetrahedra, const Network& network);
 
+/// Those that springs connect with each node of a network.
+std::vector<std::vector<int>> neighbours_of(const Network& network);
+
+/// Those of `nodes` (ascending) that are connected with a node through springs among them, that node first.
+std::vector<int> connected_with(int node, const std::vector<int>& nodes,
+                                const std::vector<std::vector<int>>& neighbours);
+
 }  // namespace springproof

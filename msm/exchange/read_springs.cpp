@@ -9,8 +9,7 @@
 
 #include "msm/algebra/dense.h"
 #include "msm/exchange/json_place.h"
-#include "msm/exchange/lattice_of_cells.h"
-#include "msm/exchange/read_cut_cells.h"
+#include "msm/exchange/read_cells.h"
 #include "msm/exchange/springs_document.h"
 #include "msm/laws/capabilities.h"
 #include "msm/laws/nodal_gradients.h"
@@ -115,36 +114,6 @@ NodalVectors vectors(const JsonPlace& place) {
   return Eigen::Map<const NodalVectors>(x.data(), static_cast<Eigen::Index>(x.size() / 3), 3);
 }
 
-template <std::size_t n>
-std::vector<std::array<int, n>> rows(const JsonPlace& place, int largest) {
-  const std::vector<int> flat = place.integers(static_cast<int>(n), largest);
-  std::vector<std::array<int, n>> all(flat.size() / n);
-  for (std::size_t r = 0; r < all.size(); ++r) {
-    std::copy_n(flat.begin() + static_cast<std::ptrdiff_t>(n * r), n, all[r].begin());
-    std::array<int, n> sorted = all[r];
-    std::sort(sorted.begin(), sorted.end());
-    if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
-      place.refuse(fmt::format("number {} names a node twice", r), fmt::format("{} different nodes", n));
-  }
-  return all;
-}
-
-/// What acts between the same nodes counts once: named twice it would be twice as stiff.
-template <std::size_t n>
-void require_each_once(const std::vector<std::array<int, n>>& all, const char* what, const JsonPlace& place) {
-  std::vector<std::pair<std::array<int, n>, std::size_t>> sorted;
-  for (std::size_t r = 0; r < all.size(); ++r) {
-    sorted.emplace_back(all[r], r);
-    std::sort(sorted.back().first.begin(), sorted.back().first.end());
-  }
-  std::sort(sorted.begin(), sorted.end());
-  const auto twice =
-      std::adjacent_find(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.first == b.first; });
-  if (twice != sorted.end())
-    place.refuse(fmt::format("{}s {} and {} connect the same nodes", what, twice->second, std::next(twice)->second),
-                 fmt::format("one {} for the same nodes", what));
-}
-
 void read_nodes(const JsonPlace& document, SpringsFile& file) {
   file.density = document.at("density_kg_m3").number(smallest_of_file, largest_number_of_file);
   const JsonPlace nodes = document.at("nodes");
@@ -172,8 +141,7 @@ void read_nodes(const JsonPlace& document, SpringsFile& file) {
 std::vector<Spring> read_springs_of(const JsonPlace& document, const NodalVectors& X) {
   const JsonPlace place = document.at("springs");
   place.require_known({"nodes", "stiffness_N_m", "rest_length_m"});
-  const auto ends = rows<2>(place.at("nodes"), static_cast<int>(X.rows()) - 1);
-  require_each_once(ends, "spring", place.at("nodes"));
+  const auto ends = rows<2>(place.at("nodes"), static_cast<int>(X.rows()) - 1, "spring");
   const auto stiffness = place.at("stiffness_N_m").numbers(1, ends.size(), "springs", smallest_of_file);
   const auto length = place.at("rest_length_m").numbers(1, ends.size(), "springs", smallest_of_file, farthest_node);
   std::vector<Spring> springs;
@@ -188,37 +156,6 @@ std::vector<Spring> read_springs_of(const JsonPlace& document, const NodalVector
 
 double version_of(const JsonPlace& document) {
   return document.at("version").number(springs_version, springs_version_of_stiff_walls);
-}
-
-void read_cells(const JsonPlace& document, Network& network) {
-  const int last = network.nodes() - 1;
-  if (const auto triangles = document.find("triangles")) {
-    network.triangles = rows<3>(*triangles, last);
-    require_each_once(network.triangles, "triangle", *triangles);
-  }
-  const auto place = document.find("cells");
-  if (!place) return;
-  CellSet& cells = network.cells;
-  place->require_known({"nodes", "edge_m", "proportions", "fraction", "mean", "mixed", "variance", "material"});
-  cells.corners = rows<8>(place->at("nodes"), last);
-  require_each_once(cells.corners, "cell", place->at("nodes"));
-  read_edges(*place, version_of(document), network);
-  read_proportions(*place, version_of(document), network);
-  for (std::size_t c = 0; c < cells.size(); ++c)
-    for (int n = 0; n < 8; ++n) {
-      const Vec3 corner(hexahedron_corners[n][0], hexahedron_corners[n][1], hexahedron_corners[n][2]);
-      const Vec3 at = (network.X.row(cells.corners[c][n]) - network.X.row(cells.corners[c][0])).transpose();
-      const Vec3 expected = cells.edge_of(c) * cells.proportions.cwiseProduct(corner);
-      if ((at - expected).cwiseAbs().maxCoeff() > 1e-6 * cells.edge * cells.proportions.minCoeff())
-        place->at("nodes").refuse(fmt::format("cell {} is no cube of edge_m in the order of corners", c),
-                                  "axis-aligned cubes, or boxes of proportions, corners (0,0,0) (1,0,0) (1,1,0) "
-                                  "(0,1,0) (0,0,1) (1,0,1) (1,1,1) "
-                                  "(0,1,1)");
-    }
-  read_filled(*place, network);
-  if (cells.kind() == CellKind::sizes && !cells.cut())
-    place->at("edge_m").refuse("is a list, of whole cells", "one edge; or with fraction, mean, mixed and variance");
-  if (!cells.empty() && !cells.cut()) recognise_lattice(network);
 }
 
 /// Calls `act` with a default value of each law of the list.
@@ -413,15 +350,16 @@ SpringsFile read_document(const JsonPlace& document) {
   const std::vector<Spring> unsorted = read_springs_of(document, network.X);
   const SpringOrder order(unsorted);
   network.springs = order(unsorted);
-  read_cells(document, network);
+  const double version = version_of(document);
+  read_cells(document, version, network);
   read_carried(document, network);
-  read_materials(document, version_of(document), file);
+  read_materials(document, version, file);
   read_laws(document, order, file.model);
   if (!network.bonds.empty() && !law_of<Anchors>(file.model)) file.model.laws.emplace_back(Anchors{});
   read_relaxation(document, file);
   require_rest(document, file.model);
   read_patches(document, file);
-  read_supports_and_loads(document, version_of(document), file);
+  read_supports_and_loads(document, version, file);
   read_surface(document, file);
   return file;
 }

@@ -135,18 +135,15 @@ Json region_json(const SpringsRegion& region) {
 /// Moments of the filled parts (meshes/voxels/filled_part.h).
 void add_filled(const std::vector<FilledPart>& filled, DocumentWriter& out) {
   std::vector<double> fraction;
-  NodalVectors mean(filled.size(), 3), mixed(filled.size(), 3), variance(filled.size(), 3);
-  for (std::size_t c = 0; c < filled.size(); ++c) {
-    const auto row = static_cast<Eigen::Index>(c);
-    fraction.push_back(filled[c].fraction);
-    mean.row(row) = filled[c].mean.transpose();
-    mixed.row(row) = filled[c].mixed.transpose();
-    variance.row(row) = filled[c].variance.transpose();
-  }
+  for (const FilledPart& part : filled) fraction.push_back(part.fraction);
   out.numbers({"cells", "fraction"}, std::move(fraction));
-  out.vectors({"cells", "mean"}, mean);
-  out.vectors({"cells", "mixed"}, mixed);
-  out.vectors({"cells", "variance"}, variance);
+  for (const auto& [key, moment] :
+       {std::pair("mean", &FilledPart::mean), {"mixed", &FilledPart::mixed}, {"variance", &FilledPart::variance}}) {
+    NodalVectors rows(filled.size(), 3);
+    for (std::size_t c = 0; c < filled.size(); ++c)
+      rows.row(static_cast<Eigen::Index>(c)) = (filled[c].*moment).transpose();
+    out.vectors({"cells", key}, rows);
+  }
 }
 
 void add_cells(const CellSet& cells, DocumentWriter& out) {
@@ -328,18 +325,11 @@ int version_of(const SpringsFile& springs) {
   if (springs.relaxing.acts()) return springs_version_of_branches;
   const CellSet& cells = springs.model.network.cells;
   if (!cells.materials.empty()) return springs_version_of_materials;
-  switch (cells.kind()) {
-    case CellKind::none:
-    case CellKind::cubes:
-      return springs_version;
-    case CellKind::cut:
-      return springs_version_of_cut_cells;
-    case CellKind::sizes:
-      return springs_version_of_several_sizes;
-    case CellKind::boxes:
-      break;
-  }
-  return springs_version_of_boxes;
+  const CellKind kind = cells.kind();
+  return kind == CellKind::cut     ? springs_version_of_cut_cells
+         : kind == CellKind::sizes ? springs_version_of_several_sizes
+         : kind == CellKind::boxes ? springs_version_of_boxes
+                                   : springs_version;
 }
 
 }  // namespace

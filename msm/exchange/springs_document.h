@@ -31,6 +31,9 @@ SpringsDocument document_of(const SpringsFile& springs);
 /// One key per line, an array in one line.
 std::string as_json(const SpringsDocument& document);
 
+/// An array as a .npy file of NumPy, version 1.0.
+std::string npy(const NamedArray& array);
+
 /// By their keys: the constants of cells by which branches resist, of a sum of shares of 1.
 /// @param cells RelaxingCells::cells; `Cells` const or not
 /// @return the keys with references to the constants

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
-#include <numeric>
 
+#include "meshes/united_numbers.h"
 #include "msm/topology/point_cells.h"
 
 namespace springproof {
@@ -61,9 +61,8 @@ CrackDirections crack_directions(const Network& network, const std::vector<char>
   double weights = 0;
   for (const Vec3& p : points) {
     std::vector<Vec3> near;
-    cells.any_near(p, [&](int other) {
+    cells.for_near(p, 1, [&](int other) {
       if ((points[other] - p).norm() <= radius) near.push_back(points[other]);
-      return false;
     });
     if (near.size() < fewest_points) continue;
     ++result.springs;
@@ -95,24 +94,19 @@ int fragments(const Network& network, const Eigen::VectorXd& u, const std::vecto
   constexpr double depth_spacings = 0.75;
   const double spacing = std::cbrt(network.volume.sum() / network.nodes()),
                layer = network.X.col(2).maxCoeff() - depth_spacings * spacing;
-  std::vector<int> leader(network.nodes());
-  std::iota(leader.begin(), leader.end(), 0);
-  const auto find = [&](int n) {
-    while (leader[n] != n) n = leader[n] = leader[leader[n]];
-    return n;
-  };
+  UnitedNumbers fragment(static_cast<std::size_t>(network.nodes()));
   const auto on_top = [&](int n) { return network.X(n, 2) > layer; };
   for (std::size_t n = 0; n < network.springs.size(); ++n) {
     const Spring& s = network.springs[n];
     if (!on_top(s.i) || !on_top(s.j)) continue;
     const Vec3 apart = u.segment<3>(3 * s.j) - u.segment<3>(3 * s.i) +
                        shrinkage[n] * (network.X.row(s.j) - network.X.row(s.i)).transpose();
-    if (apart.norm() <= opening * s.rest_length) leader[find(s.i)] = find(s.j);
+    if (apart.norm() <= opening * s.rest_length) fragment.unite(s.i, s.j);
   }
   std::vector<int> size(network.nodes(), 0);
   int all = 0;
   for (int n = 0; n < network.nodes(); ++n)
-    if (on_top(n)) ++size[find(n)], ++all;
+    if (on_top(n)) ++size[fragment.of(n)], ++all;
   return static_cast<int>(
       std::count_if(size.begin(), size.end(), [&](int n) { return n > 0 && n >= smallest_share * all; }));
 }

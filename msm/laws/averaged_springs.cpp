@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "msm/laws/cell_corners.h"
 #include "msm/laws/hourglass_correction.h"
 
 namespace springproof {
@@ -86,7 +87,6 @@ HourglassMatrix hourglass_matrix(const AveragedSprings& law, const CellShape& ce
   return D;
 }
 
-using Corners = Eigen::Matrix<double, 3, 8>;
 using InPatterns = Eigen::Matrix<double, 3, 4>;  // a vector per pattern
 
 /// The product of hourglass_matrix() with v [N], without the matrix.
@@ -110,27 +110,14 @@ InPatterns hourglass_forces(const AveragedSprings& law, const CellShape& cell, c
   return cell.part.fraction * law.shear_modulus * cell.edge / 2 * w;
 }
 
-Corners gradient_of(const CellShape& cell) {
-  const std::array<Vec3, 8> g = mean_gradients(cell);
-  Corners gradient;
-  for (int n = 0; n < 8; ++n) gradient.col(n) = g[n];
-  return gradient;
-}
-
 /// What the forces of a cell depend on beside the positions of its corners.
 struct CellAtRest {
   CellShape shape;
   double volume;     ///< of the filled part [m^3]
   Corners gradient;  ///< mean gradients of the corners' weights [1/m]
 
-  explicit CellAtRest(const CellShape& of) : shape(of), volume(of.volume()), gradient(gradient_of(of)) {}
+  explicit CellAtRest(const CellShape& of) : shape(of), volume(of.volume()), gradient(gradients_at(of)) {}
 };
-
-Corners corners_of(const Hexahedron& cell, const NodalVectors& x) {
-  Corners p;
-  for (int n = 0; n < 8; ++n) p.col(n) = x.row(cell[n]).transpose();
-  return p;
-}
 
 /// State of a cell.
 struct Deformed {
@@ -157,12 +144,10 @@ struct Deformed {
 
 CellMatrix tangent_of(const CellForm& form, const Deformed& s) {
   // P and its derivative, [9 x 9] of F, to positions of corners.
-  Eigen::Matrix<double, 9, 24> strain_gradient = Eigen::Matrix<double, 9, 24>::Zero();
+  const Eigen::Matrix<double, 9, 24> strain_gradient = slope_of_gradient(form.gradient);
   Eigen::Matrix<double, 12, 24> hourglass_gradient;
   for (int a = 0; a < 8; ++a) {
     const Vec3 g = form.gradient.col(a);
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) strain_gradient(i + 3 * j, 3 * a + i) = g[j];
     for (int m = 0; m < 4; ++m)
       hourglass_gradient.block<3, 3>(3 * m, 3 * a) = patterns()(a, m) * s.F.transpose() + g * s.q.col(m).transpose();
   }
@@ -207,7 +192,7 @@ void for_each_stiffness(const AveragedSprings& law, const CellSet& cells, const 
 }  // namespace
 
 CellForm cell_form(const AveragedSprings& law, const CellShape& cell) {
-  return {cell.volume(), gradient_of(cell), hourglass_matrix(law.in(cell.material), cell)};
+  return {cell.volume(), gradients_at(cell), hourglass_matrix(law.in(cell.material), cell)};
 }
 
 const Eigen::Matrix<double, 8, 4>& corner_patterns() { return patterns(); }
@@ -288,7 +273,7 @@ double AveragedSprings::energy(const Network& network, const NodalVectors& x) co
     });
   else
     for_each_at_rest(network.cells, [&](const Hexahedron& corners, const CellAtRest& cell) {
-      const Deformed s(in(cell.shape.material), cell, corners_of(corners, x), Derivative::none);
+      const Deformed s(in(cell.shape.material), cell, corners_at(corners, x), Derivative::none);
       sum += cell.volume * s.strain.value + 0.5 * s.v.cwiseProduct(s.w).sum();
     });
   return sum;
@@ -297,16 +282,14 @@ double AveragedSprings::energy(const Network& network, const NodalVectors& x) co
 void AveragedSprings::add_forces(const Network& network, const NodalVectors& x, NodalVectors& f) const {
   if (shift > 0)
     for_each_stiffness(*this, network.cells, [&](const Hexahedron& cell, const CellMatrix& K) {
-      const CellVector force = K * displacement_of(cell, network, x);
-      for (int n = 0; n < 8; ++n) f.row(cell[n]) -= force.segment<3>(3 * n).transpose();
+      subtract(CellVector(K * displacement_of(cell, network, x)), cell, f);
     });
   else
     for_each_at_rest(network.cells, [&](const Hexahedron& corners, const CellAtRest& cell) {
-      const Deformed s(in(cell.shape.material), cell, corners_of(corners, x), Derivative::first);
+      const Deformed s(in(cell.shape.material), cell, corners_at(corners, x), Derivative::first);
       const Eigen::Matrix3d stress = cell.volume * s.strain.stress + s.q * s.w.transpose();
       const InPatterns of_patterns = s.F * s.w;
-      const Corners gradient = stress * cell.gradient + of_patterns * patterns().transpose();
-      for (int n = 0; n < 8; ++n) f.row(corners[n]) -= gradient.col(n).transpose();
+      subtract(Corners(stress * cell.gradient + of_patterns * patterns().transpose()), corners, f);
     });
 }
 
@@ -314,12 +297,11 @@ void AveragedSprings::add_viscous_forces(const Network& network, const NodalVect
                                          double time, NodalVectors& f) const {
   if (shift > 0)
     return for_each_stiffness(*this, network.cells, [&](const Hexahedron& cell, const CellMatrix& K) {
-      const Corners rate = corners_of(cell, v);
-      const CellVector force = time * K * Eigen::Map<const CellVector>(rate.data());
-      for (int n = 0; n < 8; ++n) f.row(cell[n]) -= force.segment<3>(3 * n).transpose();
+      const Corners rate = corners_at(cell, v);
+      subtract(CellVector(time * K * Eigen::Map<const CellVector>(rate.data())), cell, f);
     });
   for_each_at_rest(network.cells, [&](const Hexahedron& corners, const CellAtRest& cell) {
-    const Corners at = corners_of(corners, x), rate = corners_of(corners, v);
+    const Corners at = corners_at(corners, x), rate = corners_at(corners, v);
     const Eigen::Matrix3d F = at * cell.gradient.transpose(), F_rate = rate * cell.gradient.transpose();
     const Eigen::Matrix3d twice = F.transpose() * F_rate + F_rate.transpose() * F;  // 2 E'
     const Eigen::Matrix3d inverse = F.inverse();
@@ -331,23 +313,19 @@ void AveragedSprings::add_viscous_forces(const Network& network, const NodalVect
         hourglass_forces(own, cell.shape, F_rate.transpose() * q + F.transpose() * (rate * patterns()));
     const Eigen::Matrix3d stress = time * (cell.volume * P + q * w.transpose());
     const InPatterns of_patterns = time * F * w;
-    const Corners force = stress * cell.gradient + of_patterns * patterns().transpose();
-    for (int n = 0; n < 8; ++n) f.row(corners[n]) -= force.col(n).transpose();
+    subtract(Corners(stress * cell.gradient + of_patterns * patterns().transpose()), corners, f);
   });
 }
 
 void AveragedSprings::add_tangent(const Network& network, const NodalVectors& x, BlockMatrix& K) const {
-  const auto add = [&](const Hexahedron& cell, const CellMatrix& cell_K) {
-    for (int m = 0; m < 8; ++m)
-      for (int n = 0; n < 8; ++n) K.add(cell[m], cell[n], cell_K.block<3, 3>(3 * m, 3 * n));
-  };
+  const auto add = [&](const Hexahedron& cell, const CellMatrix& cell_K) { add_cell(cell_K, cell, K); };
   if (shift > 0)
     for_each_stiffness(*this, network.cells, add);
   else
     for_each_cell(
         network.cells, [&](const CellShape& cell) { return std::pair(cell_form(*this, cell), CellAtRest(cell)); },
         [&](const Hexahedron& corners, const auto& of) {
-          const Deformed s(in(of.second.shape.material), of.second, corners_of(corners, x), Derivative::second);
+          const Deformed s(in(of.second.shape.material), of.second, corners_at(corners, x), Derivative::second);
           add(corners, tangent_of(of.first, s));
         });
 }

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "msm/laws/filled_volume.h"
+#include "msm/laws/cell_corners.h"
 
 namespace springproof {
 namespace {
@@ -69,19 +69,14 @@ void HourglassCorrection::add_forces(const Network& network, const NodalVectors&
   const auto K = cell_matrices(*this, network.cells.edge);
   for (std::size_t c = 0; c < network.cells.size(); ++c) {
     const Hexahedron& cell = network.cells.corners[c];
-    const CellVector force = K[network.cells.material(c)] * displacement_of(cell, network, x);
-    for (int n = 0; n < 8; ++n) f.row(cell[n]) -= force.segment<3>(3 * n).transpose();
+    subtract(CellVector(K[network.cells.material(c)] * displacement_of(cell, network, x)), cell, f);
   }
 }
 
 void HourglassCorrection::add_tangent(const Network& network, const NodalVectors&, BlockMatrix& K) const {
   const auto of_materials = cell_matrices(*this, network.cells.edge);
-  for (std::size_t c = 0; c < network.cells.size(); ++c) {
-    const Hexahedron& cell = network.cells.corners[c];
-    const auto& cell_K = of_materials[network.cells.material(c)];
-    for (int m = 0; m < 8; ++m)
-      for (int n = 0; n < 8; ++n) K.add(cell[m], cell[n], cell_K.block<3, 3>(3 * m, 3 * n));
-  }
+  for (std::size_t c = 0; c < network.cells.size(); ++c)
+    add_cell(of_materials[network.cells.material(c)], network.cells.corners[c], K);
 }
 
 }  // namespace springproof

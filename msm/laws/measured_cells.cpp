@@ -4,11 +4,12 @@
 #include <cmath>
 #include <limits>
 
+#include "msm/laws/cell_corners.h"
+
 namespace springproof {
 namespace {
 
 using CellMatrix24 = Eigen::Matrix<double, 24, 24>;
-using Corners = Eigen::Matrix<double, 3, 8>;
 using InPatterns = Eigen::Matrix<double, 3, 4>;  // a vector per pattern
 using Numbers = Deformations;
 using Voigt = Eigen::Matrix<double, 6, 1>;
@@ -79,12 +80,8 @@ struct Placed {
   Eigen::Matrix3d F;
   InPatterns q;  ///< of the positions [m]
 
-  Placed(const CellShape& shape, const Corners& x) : edge(shape.edge) {
-    const std::array<Vec3, 8> g = mean_gradients(shape);
-    for (int n = 0; n < 8; ++n) gradient.col(n) = g[n];
-    F = x * gradient.transpose();
-    q = x * corner_patterns();
-  }
+  Placed(const CellShape& shape, const Corners& x)
+      : gradient(gradients_at(shape)), edge(shape.edge), F(x * gradient.transpose()), q(x * corner_patterns()) {}
 
   bool inverted() const { return !(F.determinant() > 0); }
   Eigen::Matrix3d C() const { return F.transpose() * F; }
@@ -153,10 +150,7 @@ struct Stretched : Placed, StrainOfC {
         for (int k = 0; k < 3; ++k)
           of_F(a, b) += H.col(k).dot(second[k] * G.col(k)) + G.col(k).dot(second[k] * H.col(k));
       }
-    Eigen::Matrix<double, 9, 24> B = Eigen::Matrix<double, 9, 24>::Zero();
-    for (int n = 0; n < 8; ++n)
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) B(i + 3 * j, 3 * n + i) = gradient(j, n);
+    const Eigen::Matrix<double, 9, 24> B = slope_of_gradient(gradient);
     CellMatrix24 K = B.transpose() * of_F * B;
     const Eigen::Matrix<double, 8, 8> turned = corner_patterns() * in_patterns(of).transpose() * gradient;
     for (int a = 0; a < 8; ++a)
@@ -165,16 +159,6 @@ struct Stretched : Placed, StrainOfC {
     return K;
   }
 };
-
-Corners corners_at(const Hexahedron& cell, const NodalVectors& x) {
-  Corners p;
-  for (int n = 0; n < 8; ++n) p.col(n) = x.row(cell[n]).transpose();
-  return p;
-}
-
-void subtract(const Corners& force, const Hexahedron& cell, NodalVectors& f) {
-  for (int n = 0; n < 8; ++n) f.row(cell[n]) -= force.col(n).transpose();
-}
 
 /// dE/dC of stresses s over a step: the mean at the Gauss points of the line from C0 to C1, corrected along it to the
 /// work s . (e1 - e0) where what it lacks is more than round-off.
@@ -319,9 +303,7 @@ void MeasuredCells::add_tangent(const Network& network, const NodalVectors& x, B
     const Stretched cell(network.cells.shape(c), corners_at(corners, x));
     const DeformationForm M = form_of_cell(c);
     const DeformationRows Y = cell.slope();
-    const CellMatrix24 of_cell = Y.transpose() * M * Y + cell.curvature(M * cell.y);
-    for (int m = 0; m < 8; ++m)
-      for (int n = 0; n < 8; ++n) K.add(corners[m], corners[n], of_cell.block<3, 3>(3 * m, 3 * n));
+    add_cell(Y.transpose() * M * Y + cell.curvature(M * cell.y), corners, K);
   }
 }
 

@@ -3,8 +3,8 @@
 #include <stdexcept>
 
 #include "msm/models.h"
+#include "msm/periodic/bulk_calibration.h"
 #include "msm/periodic/homogenise.h"
-#include "msm/periodic/periodic_model.h"
 #include "msm/statics/equilibrium.h"
 
 namespace springproof {

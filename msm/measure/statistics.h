@@ -2,7 +2,6 @@
 #pragma once
 
 #include "msm/topology/network.h"
-#include "msm/topology/region.h"
 
 namespace springproof {
 
@@ -20,12 +19,5 @@ struct NetworkStatistics {
 /// Statistics of all nodes and springs; `<S>` = 2 springs / nodes, including surface nodes, which have fewer.  Images
 /// of a periodic network are not counted as nodes, so that its statistics are those of the infinite network.
 NetworkStatistics statistics(const Network& network);
-
-/// Marks the nodes further from the region's surface than the longest spring: none of their springs is missing.
-std::vector<char> bulk_nodes(const Network& network, const Region& region);
-
-/// Statistics of the bulk_nodes().  `springs` are those with an end there, a length counts once per such end, V is the
-/// volume of these nodes. All zero (NaN for means) if there is no such node.
-NetworkStatistics bulk_statistics(const Network& network, const Region& region);
 
 }  // namespace springproof

@@ -1,4 +1,5 @@
-// The homogeneous state of a model under large uniaxial strain: its stress, and where it has no equilibrium.
+// Where a model holds: its stress and equilibrium under large uniaxial strain, and its stability at rest, from the
+// eigenvalues of a small free block.
 #pragma once
 
 #include <optional>
@@ -54,5 +55,21 @@ std::optional<StrainLimit> strain_limit(const ModelParameters& parameters, const
 
 /// "neighbours move against each other along x and y": what a wave of the short ones does; else "waves of all lengths".
 std::string describe_wave(const Vec3& k);
+
+/// Whether a free block is stable, and how fast it flutters if not.
+struct BlockStability {
+  double asymmetry;            ///< |K - K^T| / |K| (Frobenius); 0 if conservative
+  double smallest_eigenvalue;  ///< real part of those of M^-1 K without rigid motions, over the largest; negative:
+                               ///< unstable
+  double flutter_damping;  ///< mass-proportional damping [1/s] below which a motion grows: max |Im| / sqrt(Re); 0 if
+                           ///< all are real
+};
+
+/// All eigenvalues of a free block of 3 x 3 x 3 cells (springs fitted to the patch test: 6 x 6 x 6, planar networks:
+/// 6 x 6) of edge `cell_edge` [m].
+BlockStability block_stability(const ModelParameters& parameters, const IsotropicMaterial& material, double cell_edge);
+
+/// One line on where the model with this material is stable, and how that is known, for its actual weights and q.
+std::string stable_range(const ModelParameters& parameters, const IsotropicMaterial& material);
 
 }  // namespace springproof

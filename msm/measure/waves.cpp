@@ -66,6 +66,23 @@ std::vector<Vec3> directions_of_sector() {
   return all;
 }
 
+/// K(k) of least eigenvalue over measure(k), k in units of pi/l, wherever that is more than 0, of the waves of a sector
+/// with their last component up to last(j).
+template <class Measure, class Last>
+SoftestWave softest_of(const CellMatrix& cell, int fineness, const Last& last, const Measure& measure) {
+  SoftestWave softest{std::numeric_limits<double>::infinity(), Vec3::Zero()};
+  for (int i = 0; i <= fineness; ++i)
+    for (int j = 0; j <= i; ++j)
+      for (int k = 0; k <= last(j); ++k) {
+        const Vec3 at = Vec3(i, j, k) / fineness;
+        const double unit = measure(at);
+        if (!(unit > 0)) continue;
+        const double least = Solver(symbol(cell, pi * at), Eigen::EigenvaluesOnly).eigenvalues()[0];
+        if (const double stiffness = least / unit; stiffness < softest.stiffness) softest = {stiffness, at};
+      }
+  return softest;
+}
+
 void take_larger(double error, double& worst) {
   if (std::abs(error) > std::abs(worst)) worst = error;
 }
@@ -97,34 +114,15 @@ WaveErrors wave_errors(const MassSpringModel& model, double G, double lambda, do
 }
 
 SoftestWave softest_wave(const MassSpringModel& model, double G) {
-  const CellMatrix cell = stiffness_of_cell(model);
-  constexpr int fineness = 12;
-  SoftestWave softest{std::numeric_limits<double>::infinity(), Vec3::Zero()};
-  for (int i = 0; i <= fineness; ++i)
-    for (int j = 0; j <= i; ++j)
-      for (int k = 0; k <= j; ++k) {
-        const Vec3 at = Vec3(i, j, k) / fineness;
-        if (at.norm() < 0.5) continue;
-        const double least = Solver(symbol(cell, pi * at), Eigen::EigenvaluesOnly).eigenvalues()[0];
-        if (const double stiffness = least / (G * model.network.cells.edge); stiffness < softest.stiffness)
-          softest = {stiffness, at};
-      }
-  return softest;
+  const auto unit = [&](const Vec3& at) { return at.norm() < 0.5 ? 0 : G * model.network.cells.edge; };
+  return softest_of(
+      stiffness_of_cell(model), 12, [](int j) { return j; }, unit);
 }
 
 SoftestWave weakest_wave(const CellMatrix& tangent, double unit) {
-  constexpr int fineness = 8;
-  SoftestWave weakest{std::numeric_limits<double>::infinity(), Vec3::Zero()};
-  for (int i = 0; i <= fineness; ++i)
-    for (int j = 0; j <= i; ++j)
-      for (int k = i == 0 ? 1 : 0; k <= fineness; ++k) {
-        const Vec3 at = Vec3(i, j, k) / fineness;
-        const double steepness = (2 - 2 * (pi * at).array().cos()).sum();
-        const double least = Solver(symbol(tangent, pi * at), Eigen::EigenvaluesOnly).eigenvalues()[0];
-        if (const double stiffness = least / (unit * steepness); stiffness < weakest.stiffness)
-          weakest = {stiffness, at};
-      }
-  return weakest;
+  const auto steepness = [&](const Vec3& at) { return unit * (2 - 2 * (pi * at).array().cos()).sum(); };
+  return softest_of(
+      tangent, 8, [](int) { return 8; }, steepness);
 }
 
 }  // namespace springproof

@@ -24,7 +24,7 @@ void calibrate(double shear_modulus, Network& network);
 /// Makes the stiffness of every node proportional to its volume: near the surface nodes lack springs, or lie closer
 /// together. A node's factor is V_i c / (sum k L^2 / 2 over its springs); springs are scaled by the mean factor of
 /// their ends, five times over, each by no more than a factor of 4 in all.  c is the material's value, from the nodes
-/// marked in `bulk` (bulk_nodes(); empty, or none marked: from those with at least the mean number of springs).
+/// marked in `bulk` (whole; empty, or none marked: from those with at least the mean number of springs).
 /// Afterwards sum k L^2 = c V, that of a bulk network of the same volume.  Periodic networks are corrected like the
 /// inside of a body.
 void correct_surface(Network& network, const std::vector<char>& bulk = {});

@@ -34,16 +34,31 @@ Option of_body(Option option) {
   return option;
 }
 
-/// An option whose value is a name from a list of names and their meanings.
 template <class T>
-Option choice(const char* name, const char* what, T ModelParameters::*member,
-              std::vector<std::pair<std::string, T>> allowed) {
+T& place_of(T ModelParameters::*member, ModelParameters& p) {
+  return p.*member;
+}
+
+template <class T>
+T& place_of(T RandomParameters::*member, ModelParameters& p) {
+  return p.random.*member;
+}
+
+/// A setter of a member of ModelParameters or RandomParameters.
+template <class T, class Owner>
+auto stored(T Owner::*member) {
+  return [=](auto value, ModelParameters& p) { place_of(member, p) = static_cast<T>(value); };
+}
+
+/// An option whose value is a name from a list of names and their meanings.
+template <class T, class Owner>
+Option choice(const char* name, const char* what, T Owner::*member, std::vector<std::pair<std::string, T>> allowed) {
   return {name, what, Type::name, [=](const Value& value, ModelParameters& p) -> std::optional<std::string> {
             const std::string* given = std::get_if<std::string>(&value);
             std::vector<std::string> names;
             for (const auto& [known, meaning] : allowed) {
               if (given && *given == known) {
-                p.*member = meaning;
+                place_of(member, p) = meaning;
                 return {};
               }
               names.push_back('"' + known + '"');
@@ -79,65 +94,47 @@ Option flag(const char* name, const char* what, std::function<void(bool, ModelPa
           }};
 }
 
-/// A number in a range, stored by `set`.
+/// A number in a range, stored by `set`; `kind`: "whole " or none.
 Option number(const char* name, const char* what, std::pair<double, double> range,
-              std::function<void(double, ModelParameters&)> set) {
+              std::function<void(double, ModelParameters&)> set, std::string kind = "") {
   return {name, what, Type::number, [=](const Value& value, ModelParameters& p) -> std::optional<std::string> {
             const double* given = std::get_if<double>(&value);
-            if (!given || !(*given >= range.first && *given <= range.second))
-              return fmt::format("must be a number, {:g} <= {} <= {:g}", range.first, name, range.second);
+            if (!given || !(*given >= range.first && *given <= range.second) ||
+                (!kind.empty() && *given != std::floor(*given)))
+              return fmt::format("must be a {}number, {:g} <= {} <= {:g}", kind, range.first, name, range.second);
             set(*given, p);
             return {};
           }};
-}
-
-/// A whole number from 1.
-Option whole(const char* name, const char* what, double high, std::function<void(double, ModelParameters&)> set) {
-  return {name, what, Type::number, [=](const Value& value, ModelParameters& p) -> std::optional<std::string> {
-            const double* given = std::get_if<double>(&value);
-            if (!given || !(*given >= 1 && *given <= high && *given == std::floor(*given)))
-              return fmt::format("must be a whole number, 1 <= {} <= {:g}", name, high);
-            set(*given, p);
-            return {};
-          }};
-}
-
-std::optional<std::string> set_surface(const Value& value, ModelParameters& p) {
-  const std::string* given = std::get_if<std::string>(&value);
-  if (!given || (*given != "nodes" && *given != "cut")) return "must be \"nodes\" or \"cut\"";
-  p.random.surface_nodes = *given == "nodes";
-  return {};
 }
 
 std::vector<Option> random_options() {
-  return {number("min_length", "random: least distance of two nodes over the spacing (default 0.8)", {0.1, 0.95},
-                 [](double v, ModelParameters& p) { p.random.min_length = v; }),
-          number("max_length", "random: longest spring over the spacing, instead of springs_per_node", {0.5, 4},
-                 [](double v, ModelParameters& p) { p.random.max_length = v; }),
-          number("springs_per_node", "random: mean number of springs at a node (default 15; emsm_patch: 50)", {4, 60},
-                 [](double v, ModelParameters& p) { p.random.springs_per_node = v; }),
-          number("stiffness_exponent", "random: p in k ~ L^-p (default 0)", {-4, 4},
-                 [](double v, ModelParameters& p) { p.random.stiffness_exponent = v; }),
-          of_body(number("nodes_per_m3", "random: nodes per cubic metre (default: one per cube of the lattice)",
-                         {1e-12, 1e24}, [](double v, ModelParameters& p) { p.node_density = v; })),
-          whole("seed", "random: first seed (default 1)", 4294967295.0,
-                [](double v, ModelParameters& p) { p.random.seed = static_cast<std::uint64_t>(v); }),
-          whole("seeds", "random: number of networks (default 1)", 1000,
-                [](double v, ModelParameters& p) { p.seeds = static_cast<int>(v); }),
-          {"surface", "random: nodes on the surface (default), or cut, whose springs are left as they are made",
-           Type::name, set_surface},
-          flag("windows", "random: nodes in stages, by spherical windows, as the paper; with surface = \"cut\"",
-               [](bool on, ModelParameters& p) { p.random.windows = on; })};
+  return {
+      number("min_length", "random: least distance of two nodes over the spacing (default 0.8)", {0.1, 0.95},
+             stored(&RandomParameters::min_length)),
+      number("max_length", "random: longest spring over the spacing, instead of springs_per_node", {0.5, 4},
+             stored(&RandomParameters::max_length)),
+      number("springs_per_node", "random: mean number of springs at a node (default 15; emsm_patch: 50)", {4, 60},
+             stored(&RandomParameters::springs_per_node)),
+      number("stiffness_exponent", "random: p in k ~ L^-p (default 0)", {-4, 4},
+             stored(&RandomParameters::stiffness_exponent)),
+      of_body(number("nodes_per_m3", "random: nodes per cubic metre (default: one per cube of the lattice)",
+                     {1e-12, 1e24}, stored(&ModelParameters::node_density))),
+      number("seed", "random: first seed (default 1)", {1, 4294967295.0}, stored(&RandomParameters::seed), "whole "),
+      number("seeds", "random: number of networks (default 1)", {1, 1000}, stored(&ModelParameters::seeds), "whole "),
+      choice<bool>("surface", "random: nodes on the surface (default), or cut, whose springs are left as they are made",
+                   &RandomParameters::surface_nodes, {{"nodes", true}, {"cut", false}}),
+      flag("windows", "random: nodes in stages, by spherical windows, as the paper; with surface = \"cut\"",
+           stored(&RandomParameters::windows))};
 }
 
 Option hold_option() {
   return of_body(flag("hold_rigid_motions", "rigid motions that the loads leave free are constrained, not refused",
-                      [](bool on, ModelParameters& p) { p.hold_rigid_motions = on; }));
+                      stored(&ModelParameters::hold_rigid_motions)));
 }
 
 Option grip_option() {
   return of_body(number("grip", "depth, in node spacings, to which supports hold nodes that are not the mesh's",
-                        {0, 100}, [](double v, ModelParameters& p) { p.grip = v; }));
+                        {0, 100}, stored(&ModelParameters::grip)));
 }
 
 std::vector<Option> averaging_options() {
@@ -162,7 +159,7 @@ std::vector<Option> dispersion_options(const ModelRow& row) {
 std::vector<Option> options_of(const ModelRow& row) {
   if (row.topology == Topology::file) return {hold_option(), grip_option()};
   std::vector<Option> options = {flag("paper_e_form", "springs from E as in the tables of Golec et al. (2019)",
-                                      [](bool on, ModelParameters& p) { p.paper_e_form = on; })};
+                                      stored(&ModelParameters::paper_e_form))};
   if ((row.topology == Topology::cells || row.topology == Topology::centres) && row.extension != Extension::averaging)
     options.push_back({"face_to_cube", "lattices: A = k_f / k_c", Type::number, set_face_to_cube});
   if (row.extension == Extension::averaging) options = averaging_options();
@@ -178,14 +175,14 @@ std::vector<Option> options_of(const ModelRow& row) {
   options.push_back(hold_option());
   if (row.topology == Topology::cells && row.extension != Extension::momentum_dispersion) {
     options.push_back(of_body(flag("cut", "cut cells of a body of voxels, or whole cubes (default: as the body says)",
-                                   [](bool on, ModelParameters& p) { p.cut = on; })));
+                                   stored(&ModelParameters::cut))));
     options.push_back(of_body(
         flag("coarsened", "cut cells whose stiffness is measured in a finer lattice (default: as the body says)",
-             [](bool on, ModelParameters& p) { p.coarsened = on; })));
+             stored(&ModelParameters::coarsened))));
     options.push_back(of_body(number("shift",
                                      "averaged springs, cut cells: part of the way from the middle of a cell to the "
                                      "centroid of its filled part, at which the strain is taken (default 0)",
-                                     {0, 1}, [](double v, ModelParameters& p) { p.shift = v; })));
+                                     {0, 1}, stored(&ModelParameters::shift))));
   }
   if (row.topology != Topology::cells) options.push_back(grip_option());
   if (row.extension == Extension::volume_correction)

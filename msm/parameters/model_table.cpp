@@ -4,7 +4,7 @@
 #include <variant>
 
 #include "msm/exchange/springs_file.h"
-#include "msm/parameters/made_of.h"
+#include "msm/parameters/model_options.h"
 
 namespace springproof {
 namespace {

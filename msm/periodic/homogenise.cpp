@@ -109,13 +109,9 @@ KrylovResult relax(const PeriodicStiffness& K, const PeriodicStiffness* companio
   return result;
 }
 
-struct Effective {
-  Eigen::MatrixXd C;
-  int iterations = 0;
-  double residual = 0;
-};
-
-Effective effective_stiffness(const MassSpringModel& model, const Strains& strains, const HomogeniseOptions& options) {
+/// The stiffness, and what it took to find it.
+Homogenised effective_stiffness(const MassSpringModel& model, const Strains& strains,
+                                const HomogeniseOptions& options) {
   const Network& network = model.network;
   if (network.image_of.empty()) throw std::invalid_argument("homogenisation needs a periodic network");
   const PeriodicStiffness K(model);
@@ -129,7 +125,8 @@ Effective effective_stiffness(const MassSpringModel& model, const Strains& strai
     const NodalVectors u = network.X * strains[a];
     affine.col(a) = flat(u);
   }
-  Effective effective{Eigen::MatrixXd(size, size)};
+  Homogenised effective{};
+  effective.C.resize(size, size);
   Eigen::VectorXd force;
   for (Eigen::Index b = 0; b < size; ++b) {
     K.multiply(affine.col(b), force);
@@ -157,57 +154,36 @@ Eigen::MatrixXd kelvin(Eigen::MatrixXd C, int normal_strains) {
   return C;
 }
 
-template <class Result>
-void compare_with_isotropic(const Eigen::MatrixXd& isotropic, int normal_strains, Result& result) {
-  const Eigen::MatrixXd C = kelvin(result.C, normal_strains);
-  result.anisotropy = (C - kelvin(isotropic, normal_strains)).norm() / C.norm();
-  result.asymmetry = (C - C.transpose()).norm() / C.norm();
-}
-
 }  // namespace
 
-Eigen::Matrix<double, 6, 6> isotropic_stiffness(double K, double G) {
-  Eigen::Matrix<double, 6, 6> C = Eigen::Matrix<double, 6, 6>::Zero();
-  C.topLeftCorner<3, 3>().setConstant(K - 2 * G / 3);
-  C.diagonal().head<3>().array() += 2 * G;
-  C.diagonal().tail<3>().setConstant(G);
+Eigen::MatrixXd isotropic_stiffness(double K, double G, int dimensions) {
+  const int shears = dimensions * (dimensions - 1) / 2;
+  Eigen::MatrixXd C = Eigen::MatrixXd::Zero(dimensions + shears, dimensions + shears);
+  C.topLeftCorner(dimensions, dimensions).setConstant(K - 2 * G / dimensions);
+  C.diagonal().head(dimensions).array() += 2 * G;
+  C.diagonal().tail(shears).setConstant(G);
   return C;
 }
 
 Homogenised homogenise(const MassSpringModel& model, const HomogeniseOptions& options) {
-  const Effective effective = effective_stiffness(model,
-                                                  {unit_strain(0, 0), unit_strain(1, 1), unit_strain(2, 2),
-                                                   unit_strain(1, 2), unit_strain(2, 0), unit_strain(0, 1)},
-                                                  options);
-  Homogenised h{};
-  h.C = effective.C;
-  h.iterations = effective.iterations;
-  h.residual = effective.residual;
-  // The eigenvalues of an isotropic tensor are 3 K and, five times, 2 G: projections of the tensor and of its trace.
-  const double K = h.C.topLeftCorner<3, 3>().sum() / 9, G = (kelvin(h.C, 3).trace() - 3 * K) / 10;
+  const bool planar = !model.network.triangles.empty();
+  Strains strains = {unit_strain(0, 0), unit_strain(1, 1), unit_strain(0, 1)};
+  if (!planar)
+    strains = {unit_strain(0, 0), unit_strain(1, 1), unit_strain(2, 2),
+               unit_strain(1, 2), unit_strain(2, 0), unit_strain(0, 1)};
+  Homogenised h = effective_stiffness(model, strains, options);
+  // The eigenvalues of an isotropic tensor of d dimensions are d K and, all others, 2 G: projections of the tensor and
+  // of its trace.
+  const int d = planar ? 2 : 3;
+  const Eigen::MatrixXd C = kelvin(h.C, d);
+  const double K = h.C.topLeftCorner(d, d).sum() / (d * d), G = (C.trace() - d * K) / (d * (d + 1) - 2);
+  const double scale = d * (d - 1) * K + 2 * G;
   h.bulk_modulus = K;
   h.shear_modulus = G;
-  h.youngs_modulus = 9 * K * G / (3 * K + G);
-  h.poisson_ratio = (3 * K - 2 * G) / (2 * (3 * K + G));
-  compare_with_isotropic(isotropic_stiffness(K, G), 3, h);
-  return h;
-}
-
-HomogenisedPlane homogenise_plane(const MassSpringModel& model, const HomogeniseOptions& options) {
-  const Effective effective =
-      effective_stiffness(model, {unit_strain(0, 0), unit_strain(1, 1), unit_strain(0, 1)}, options);
-  HomogenisedPlane h{};
-  h.C = effective.C;
-  h.iterations = effective.iterations;
-  h.residual = effective.residual;
-  const double K = h.C.topLeftCorner<2, 2>().sum() / 4, G = (kelvin(h.C, 2).trace() - 2 * K) / 4;
-  h.bulk_modulus = K;
-  h.shear_modulus = G;
-  h.youngs_modulus = 4 * K * G / (K + G);
-  h.poisson_ratio = (K - G) / (K + G);
-  Eigen::Matrix3d isotropic;
-  isotropic << K + G, K - G, 0, K - G, K + G, 0, 0, 0, G;
-  compare_with_isotropic(isotropic, 2, h);
+  h.youngs_modulus = 2 * d * d * K * G / scale;
+  h.poisson_ratio = (d * K - 2 * G) / scale;
+  h.anisotropy = (C - kelvin(isotropic_stiffness(K, G, d), d)).norm() / C.norm();
+  h.asymmetry = (C - C.transpose()).norm() / C.norm();
   return h;
 }
 

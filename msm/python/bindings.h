@@ -66,6 +66,10 @@ py::array view(const T* data, std::vector<py::ssize_t> shape, const py::object& 
   return read_only(py::array(py::dtype::of<T>(), std::move(shape), {}, data, owner));
 }
 inline py::array view(const NodalVectors& v, const py::object& owner) { return view(v.data(), {v.rows(), 3}, owner); }
+template <std::size_t n>
+py::array view(const std::vector<std::array<int, n>>& rows, const py::object& owner) {
+  return view(reinterpret_cast<const int*>(rows.data()), {py::ssize_t(rows.size()), py::ssize_t(n)}, owner);
+}
 /// An array that owns what it is made of.
 inline py::array moved(NodalVectors v) {
   auto* kept = new NodalVectors(std::move(v));

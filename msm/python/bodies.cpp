@@ -221,18 +221,10 @@ coordinates `scale` multiplies, if given, else that of the body.)")
           "nodes", [](const py::object& self) { return view(self.cast<SolidBody&>().mesh->nodes, self); },
           "corners of the cubes at rest, n x 3 [m]; a view")
       .def_property_readonly(
-          "cells",
-          [](const py::object& self) {
-            const auto& cells = self.cast<SolidBody&>().mesh->hexahedra;
-            return view(reinterpret_cast<const int*>(cells.data()), {py::ssize_t(cells.size()), 8}, self);
-          },
+          "cells", [](const py::object& self) { return view(self.cast<SolidBody&>().mesh->hexahedra, self); },
           "corners of each cube, c x 8, in the order of VTK's hexahedron; a view")
       .def_property_readonly(
-          "tetrahedra",
-          [](const py::object& self) {
-            const auto& cells = self.cast<SolidBody&>().mesh->tetrahedra;
-            return view(reinterpret_cast<const int*>(cells.data()), {py::ssize_t(cells.size()), 4}, self);
-          },
+          "tetrahedra", [](const py::object& self) { return view(self.cast<SolidBody&>().mesh->tetrahedra, self); },
           "corners of each tetrahedron, t x 4, of the body that compare() hands to a function; of cubes none; a view")
       .def_property_readonly("patches", &patches_of, "name -> numbers of the patch's nodes, ascending")
       .def_property_readonly(

@@ -8,10 +8,10 @@
 #include "msm/coarsening/measure_cells.h"
 #include "msm/dynamics/time_step.h"
 #include "msm/measure/moduli.h"
-#include "msm/parameters/made_of.h"
+#include "msm/parameters/model_options.h"
+#include "msm/periodic/bulk_calibration.h"
 #include "msm/periodic/homogenise.h"
 #include "msm/periodic/laws_of_model.h"
-#include "msm/periodic/periodic_model.h"
 #include "msm/python/bindings.h"
 #include "msm/springs_of_model.h"
 
@@ -129,11 +129,6 @@ py::array springs_view(const py::object& self) {
   return view(springs.data(), {py::ssize_t(springs.size())}, self);
 }
 
-py::array cells_view(const py::object& self) {
-  const auto& cells = self.cast<BodyModel&>().network().cells.corners;
-  return view(reinterpret_cast<const int*>(cells.data()), {py::ssize_t(cells.size()), 8}, self);
-}
-
 py::dict moduli_of(const IsotropicMaterial& m, double E, double nu, double G, double K) {
   return py::dict("E"_a = E, "nu"_a = nu, "G"_a = G, "K"_a = K, "wanted"_a = m);
 }
@@ -206,8 +201,9 @@ the model.)");
           "of the nodes, n [kg]; a view")
       .def_property_readonly("springs", &springs_view,
                              "s records (i, j, stiffness [N/m], rest_length [m]) of springs, i < j; a view")
-      .def_property_readonly("cells", &cells_view,
-                             "corners of each cell, c x 8, none for networks without cells; a view")
+      .def_property_readonly(
+          "cells", [](const py::object& self) { return view(self.cast<BodyModel&>().network().cells.corners, self); },
+          "corners of each cell, c x 8, none for networks without cells; a view")
       .def_property_readonly(
           "cell_materials",
           [](const BodyModel& b) {

@@ -71,6 +71,16 @@ struct PointCells {
             if (f(p)) return true;
     return false;
   }
+
+  /// f(point) for all of them.
+  template <class F>
+  void for_near(const Vec3& x, int rings, F f) const {
+    const auto go_on = [&](int p) {
+      f(p);
+      return false;
+    };
+    any_near(x, go_on, rings);
+  }
 };
 
 }  // namespace springproof

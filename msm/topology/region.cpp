@@ -3,15 +3,12 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <memory>
-#include <numbers>
 #include <stdexcept>
 #include <utility>
 
-#include "meshes/locate/outer_facets.h"
+#include "meshes/box.h"
 #include "meshes/volume.h"
-#include "msm/topology/point_cells.h"
 #include "msm/topology/ray_parity.h"
 
 namespace springproof {
@@ -70,59 +67,15 @@ std::function<bool(const Vec3&)> inside_grid(const Grid& grid, double tolerance)
   };
 }
 
-using Points = std::vector<Vec3>;
-using Triangles = std::vector<std::array<int, 3>>;
-
-void icosahedron(Points& points, Triangles& triangles) {
-  const double g = (1 + std::sqrt(5.0)) / 2;
-  for (const double s : {-1.0, 1.0})
-    for (const double t : {-g, g}) {
-      points.emplace_back(0, s, t);
-      points.emplace_back(s, t, 0);
-      points.emplace_back(t, 0, s);
-    }
-  for (int a = 0; a < 12; ++a)  // neighbours are 2 apart, all others more
-    for (int b = a + 1; b < 12; ++b)
-      for (int c = b + 1; c < 12; ++c) {
-        const Vec3 ab = points[b] - points[a], ac = points[c] - points[a], bc = points[c] - points[b];
-        if (std::max({ab.squaredNorm(), ac.squaredNorm(), bc.squaredNorm()}) > 5) continue;
-        if (ab.cross(ac).dot(points[a]) > 0)
-          triangles.push_back({a, b, c});
-        else
-          triangles.push_back({a, c, b});
-      }
-  for (Vec3& p : points) p /= p.norm();
-}
-
-void subdivide(Points& points, Triangles& triangles) {
-  std::map<std::pair<int, int>, int> middles;
-  const auto middle = [&](int a, int b) {
-    const auto [entry, is_new] = middles.try_emplace(std::minmax(a, b), static_cast<int>(points.size()));
-    if (is_new) {
-      const Vec3 p = points[a] + points[b];
-      points.push_back(p / p.norm());
-    }
-    return entry->second;
-  };
-  Triangles finer;
-  for (const auto& [a, b, c] : triangles) {
-    const int ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
-    finer.insert(finer.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
-  }
-  triangles = std::move(finer);
-}
-
 }  // namespace
 
 Region region_of(const Mesh& mesh) {
   if (mesh.hexahedra.empty() && mesh.tetrahedra.empty()) throw std::invalid_argument("the mesh has no cells to fill");
   Region region;
   add_surface(mesh, region);
-  region.lower = region.upper = region.surface_points.front();
-  for (const Vec3& p : region.surface_points) {
-    region.lower = region.lower.cwiseMin(p);
-    region.upper = region.upper.cwiseMax(p);
-  }
+  const Box box = box_of(region.surface_points);
+  region.lower = box.low;
+  region.upper = box.high;
   region.volume = volume(mesh, mesh.nodes);
   const double tolerance = boundary_tolerance * region.size();
   if (mesh.grid) {
@@ -133,35 +86,6 @@ Region region_of(const Mesh& mesh) {
     region.inside = [surface](const Vec3& p) { return surface->inside(p); };
   }
   return region;
-}
-
-Region ball(const Vec3& centre, double radius) {
-  if (!(radius > 0)) throw std::invalid_argument("ball: the radius must be positive");
-  Region region;
-  icosahedron(region.surface_points, region.surface_triangles);
-  for (int level = 0; level < 5; ++level) subdivide(region.surface_points, region.surface_triangles);
-  for (Vec3& p : region.surface_points) p = centre + radius * p;
-  region.lower = centre - Vec3::Constant(radius);
-  region.upper = centre + Vec3::Constant(radius);
-  region.volume = 4 * std::numbers::pi / 3 * radius * radius * radius;
-  const double reach = radius + boundary_tolerance * region.size();
-  region.inside = [centre, reach](const Vec3& p) { return (p - centre).squaredNorm() <= reach * reach; };
-  return region;
-}
-
-std::vector<char> near_surface(const Region& region, const std::vector<Vec3>& points, double distance) {
-  PointCells cells(region.lower, region.upper, std::max(1.5 * distance, region.size() / 300), false);
-  for (const Vec3& p : points) cells.add(p);
-  std::vector<char> near(points.size(), 0);
-  for (const auto& t : region.surface_triangles)
-    for_pieces(region.surface_points[t[0]], region.surface_points[t[1]], region.surface_points[t[2]], distance / 2,
-               [&](const Vec3& a, const Vec3& b, const Vec3& c) {
-                 cells.any_near((a + b + c) / 3, [&](int p) {
-                   near[p] = near[p] || (closest_point(points[p], a, b, c) - points[p]).norm() < distance;
-                   return false;
-                 });
-               });
-  return near;
 }
 
 }  // namespace springproof

@@ -28,13 +28,6 @@ struct Region {
 /// @throws std::invalid_argument if the mesh has no cells.
 Region region_of(const Mesh& mesh);
 
-/// A ball; its surface is an icosahedron subdivided five times, at most 3e-4 radii within the sphere.
-/// @throws std::invalid_argument if the radius is not positive.
-Region ball(const Vec3& centre, double radius);
-
-/// Marks the points closer than `distance` [m] to the region's surface.
-std::vector<char> near_surface(const Region& region, const std::vector<Vec3>& points, double distance);
-
 /// f(a, b, c) for pieces of the triangle that are no wider than `width` [m].
 template <class F>
 void for_pieces(const Vec3& a, const Vec3& b, const Vec3& c, double width, F f) {

@@ -5,7 +5,7 @@
 
 #include "msm/dynamics/dynamics.h"
 #include "msm/measure/moduli.h"
-#include "msm/measure/stability.h"
+#include "msm/measure/validity.h"
 #include "msm/periodic/bulk_calibration.h"
 #include "msm/statics/equilibrium.h"
 #include "support/zoo.h"

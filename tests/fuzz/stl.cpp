@@ -2,8 +2,8 @@
 #include <map>
 
 #include "fuzz/reader.h"
-#include "meshes/surface/stl.h"
 #include "meshes/surface/surface_check.h"
+#include "meshes/surface/surface_files.h"
 #include "problem/system/input_error.h"
 
 namespace {

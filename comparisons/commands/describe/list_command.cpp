@@ -9,7 +9,7 @@
 #include "comparisons/run/expected_runs.h"
 #include "comparisons/sweep/find_cases.h"
 #include "comparisons/sweep/status.h"
-#include "msm/parameters/made_of.h"
+#include "msm/parameters/model_options.h"
 #include "msm/parameters/model_table.h"
 #include "problem/case_file/experiment.h"
 #include "problem/case_file/measures.h"

@@ -15,7 +15,7 @@
 #include "comparisons/sweep/status.h"
 #include "msm/exchange/lammps.h"
 #include "msm/laws/capabilities.h"
-#include "msm/parameters/made_of.h"
+#include "msm/parameters/model_options.h"
 #include "problem/files/files.h"
 #include "problem/system/number_checks.h"
 #include "problem/system/streams.h"

@@ -14,8 +14,8 @@
 #include "comparisons/sweep/status.h"
 #include "msm/algebra/dense.h"
 #include "msm/measure/statistics.h"
+#include "msm/periodic/bulk_calibration.h"
 #include "msm/periodic/homogenise.h"
-#include "msm/periodic/periodic_model.h"
 #include "problem/case_file/experiment.h"
 #include "problem/system/streams.h"
 
@@ -94,9 +94,9 @@ double wanted(const Quantity& quantity, const ModelParameters& p, const Isotropi
   return quantity.of(h);
 }
 
-nlohmann::json matrix_json(const Eigen::Matrix<double, 6, 6>& C) {
+nlohmann::json matrix_json(const Eigen::MatrixXd& C) {
   nlohmann::json rows = nlohmann::json::array();
-  for (int i = 0; i < 6; ++i) rows.push_back(std::vector<double>{C(i, 0), C(i, 1), C(i, 2), C(i, 3), C(i, 4), C(i, 5)});
+  for (const auto row : C.rowwise()) rows.push_back(std::vector<double>(row.begin(), row.end()));
   return rows;
 }
 

@@ -12,7 +12,6 @@
 #include "comparisons/results/facts.h"
 #include "msm/dynamics/time_step.h"
 #include "msm/measure/moduli.h"
-#include "msm/measure/stability.h"
 #include "msm/measure/statistics.h"
 #include "msm/measure/validity.h"
 #include "msm/measure/waves.h"

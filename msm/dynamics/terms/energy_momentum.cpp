@@ -7,13 +7,13 @@
 
 #include "msm/laws/anchors.h"
 #include "msm/laws/capabilities.h"
+#include "msm/laws/cell_corners.h"
 #include "msm/laws/nodal_gradients.h"
 
 namespace springproof {
 namespace {
 
 using Mat3 = Eigen::Matrix3d;
-using Corners = Eigen::Matrix<double, 3, 8>;
 
 /// Square of the change of C below which two Gauss points give the work to round-off: their error is of fifth order.
 constexpr double small_change = 1e-5;
@@ -44,16 +44,6 @@ Stress stress_in(const Mat3& C, Derivative up_to, const Energy& energy) {
   if (up_to == Derivative::none) return {W.value, Mat3::Zero()};
   const Mat3 S = F.triangularView<Eigen::Upper>().solve(W.stress);
   return {W.value, (S + S.transpose()) / 2};
-}
-
-Corners corners_at(const Hexahedron& cell, const NodalVectors& x) {
-  Corners p;
-  for (int n = 0; n < 8; ++n) p.col(n) = x.row(cell[n]).transpose();
-  return p;
-}
-
-void subtract(const Corners& gradient, const Hexahedron& cell, NodalVectors& f) {
-  for (int n = 0; n < 8; ++n) f.row(cell[n]) -= gradient.col(n).transpose();
 }
 
 /// Force of a tension over the step: along the mean spring, per mean length.
@@ -105,9 +95,7 @@ struct AddSecantForces {
 
   void operator()(const VolumeCorrection& law) const {
     const double V = network.cells.volume();
-    const std::array<Vec3, 8> g = mean_gradients(network.cells.full());
-    Corners gradient;
-    for (int n = 0; n < 8; ++n) gradient.col(n) = g[n];
+    const Corners gradient = gradients_at(network.cells.full());
     const auto at = [form = law.form](const Mat3& C, Derivative up_to) -> Stress {
       const double J = std::sqrt(C.determinant());
       const VolumeDensity psi = volume_density(form, J);
@@ -117,7 +105,7 @@ struct AddSecantForces {
       const Hexahedron& cell = network.cells.corners[c];
       const Mat3 F0 = corners_at(cell, x0) * gradient.transpose(), F1 = corners_at(cell, x1) * gradient.transpose();
       const Mat3 S = secant_stress(F0.transpose() * F0, F1.transpose() * F1, at);
-      subtract(V * law.in(network.cells.material(c)).kappa / 2 * (F0 + F1) * S * gradient, cell, f);
+      subtract(Corners(V * law.in(network.cells.material(c)).kappa / 2 * (F0 + F1) * S * gradient), cell, f);
     }
   }
 
@@ -141,8 +129,9 @@ struct AddSecantForces {
       const AveragedSprings& law = all.in(network.cells.material(c));
       const auto at = [&](const Mat3& C, Derivative up_to) { return stress(law, C, up_to); };
       const Mat3 S = secant_stress(F0.transpose() * F0, F1.transpose() * F1, at);
-      subtract((form.volume * F * S + q * w.transpose()) * form.gradient + F * w * corner_patterns().transpose(),
-               network.cells.corners[c], f);
+      const Corners gradient =
+          (form.volume * F * S + q * w.transpose()) * form.gradient + F * w * corner_patterns().transpose();
+      subtract(gradient, network.cells.corners[c], f);
     }
   }
 

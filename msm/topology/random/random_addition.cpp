@@ -57,10 +57,9 @@ struct Boxes {
     for (const auto& part : parts) {
       const Vec3 centre = corner(part, 0.5, 0.5, 0.5);
       away.clear();
-      sample.cells.any_near(centre, [&](int p) {
+      sample.cells.for_near(centre, 1, [&](int p) {
         const Vec3 d = sample.cells.nearest_image(centre - sample.points[p]);
         if (d.squaredNorm() < near * near) away.push_back(d);
-        return false;
       });
       for (std::uint32_t c = 0; c < 8; ++c) {
         const Vec3 shift = edge.cwiseProduct(Vec3(c & 1, c >> 1 & 1, c >> 2) - Vec3(0.5, 0.5, 0.5)) / 2;

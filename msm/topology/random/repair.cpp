@@ -7,6 +7,8 @@
 #include <tuple>
 #include <utility>
 
+#include "meshes/united_numbers.h"
+
 namespace springproof {
 namespace {
 
@@ -50,18 +52,14 @@ std::vector<Sums> direction_sums(const std::vector<Vec3>& points, const std::vec
 }
 
 /// Nodes that are not in the largest connected part.
-std::vector<char> detached(std::size_t nodes, const std::vector<Bond>& bonds) {
-  std::vector<int> parent(nodes), size(nodes, 0);
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int n) {
-    while (parent[n] != n) n = parent[n] = parent[parent[n]];
-    return n;
-  };
-  for (const Bond& b : bonds) parent[root(b.j)] = root(b.i);
-  for (std::size_t n = 0; n < nodes; ++n) ++size[root(static_cast<int>(n))];
-  const int largest = static_cast<int>(std::max_element(size.begin(), size.end()) - size.begin());
-  std::vector<char> off(nodes);
-  for (std::size_t n = 0; n < nodes; ++n) off[n] = root(static_cast<int>(n)) != largest;
+std::vector<char> detached(int nodes, const std::vector<Bond>& bonds) {
+  UnitedNumbers part(static_cast<std::size_t>(nodes));
+  for (const Bond& b : bonds) part.unite(b.i, b.j);
+  std::vector<int> size(static_cast<std::size_t>(nodes), 0);
+  for (int n = 0; n < nodes; ++n) ++size[part.of(n)];
+  const auto largest = std::max_element(size.begin(), size.end()) - size.begin();
+  std::vector<char> off(size.size());
+  for (int n = 0; n < nodes; ++n) off[n] = part.of(n) != largest;
   return off;
 }
 
@@ -105,17 +103,13 @@ int nearest_point(const std::vector<Vec3>& points, const PointCells& cells, cons
   double distance = std::numeric_limits<double>::infinity();
   const int most_rings = *std::max_element(cells.count.begin(), cells.count.end());
   for (int rings = 1; rings <= most_rings && distance > cell * cell * (rings - 1) * (rings - 1); ++rings)
-    cells.any_near(
-        x,
-        [&](int p) {
-          const double d = cells.nearest_image(points[p] - x).squaredNorm();
-          if (d < distance || (d == distance && p < nearest)) {
-            distance = d;
-            nearest = p;
-          }
-          return false;
-        },
-        rings);
+    cells.for_near(x, rings, [&](int p) {
+      const double d = cells.nearest_image(points[p] - x).squaredNorm();
+      if (d < distance || (d == distance && p < nearest)) {
+        distance = d;
+        nearest = p;
+      }
+    });
   return nearest;
 }
 
@@ -129,7 +123,7 @@ NetworkRepair repair(std::vector<Vec3>& points, std::vector<Bond>& bonds, const 
     std::transform(sums.begin(), sums.end(), off.begin(), is_floppy);
     int* count = &counts.floppy_nodes;
     if (std::count(off.begin(), off.end(), 1) == 0) {
-      off = detached(points.size(), bonds);
+      off = detached(static_cast<int>(points.size()), bonds);
       count = &counts.detached_nodes;
     }
     const int removed = static_cast<int>(std::count(off.begin(), off.end(), 1));
@@ -161,12 +155,11 @@ std::vector<Bond> bonds_within(const std::vector<Vec3>& points, const PointCells
   std::vector<Bond> bonds;
   for (int i = 0; i < static_cast<int>(points.size()); ++i) {
     const std::size_t first = bonds.size();
-    cells.any_near(points[i], [&](int j) {
-      if (j <= i) return false;
+    cells.for_near(points[i], 1, [&](int j) {
+      if (j <= i) return;
       const Vec3 plain = points[j] - points[i], d = cells.nearest_image(plain);
       if (d.squaredNorm() < max_length * max_length && passes_inside(inside, points[i], points[j]))
         bonds.push_back({i, j, shift_of(cells, plain, d)});
-      return false;
     });
     std::sort(bonds.begin() + first, bonds.end(), [](const Bond& a, const Bond& b) { return a.j < b.j; });
   }
@@ -184,15 +177,11 @@ void join_sparse_points(const std::vector<Vec3>& points, const PointCells& cells
   for (int i = 0; i < static_cast<int>(points.size()); ++i) {
     if (static_cast<int>(joined[i].size()) >= least) continue;
     std::vector<std::pair<double, int>> others;
-    cells.any_near(
-        points[i],
-        [&](int j) {
-          const double d = (points[j] - points[i]).norm();
-          const bool is_new = j != i && std::find(joined[i].begin(), joined[i].end(), j) == joined[i].end();
-          if (is_new && d < 2 * max_length && passes_inside(inside, points[i], points[j])) others.emplace_back(d, j);
-          return false;
-        },
-        2);
+    cells.for_near(points[i], 2, [&](int j) {
+      const double d = (points[j] - points[i]).norm();
+      const bool is_new = j != i && std::find(joined[i].begin(), joined[i].end(), j) == joined[i].end();
+      if (is_new && d < 2 * max_length && passes_inside(inside, points[i], points[j])) others.emplace_back(d, j);
+    });
     std::sort(others.begin(), others.end());
     for (const auto& [d, j] : others) {
       if (static_cast<int>(joined[i].size()) >= least) break;
@@ -214,10 +203,9 @@ double length_for(double springs_per_node, const std::vector<Vec3>& points, cons
     for (const Vec3& p : points) cells.add(p);
     squares.clear();
     for (int i = 0; i < static_cast<int>(points.size()); ++i)
-      cells.any_near(points[i], [&](int j) {
+      cells.for_near(points[i], 1, [&](int j) {
         const double d = cells.nearest_image(points[j] - points[i]).squaredNorm();
         if (j > i && d < reach * reach) squares.push_back(d);
-        return false;
       });
   }
   std::nth_element(squares.begin(), squares.begin() + wanted, squares.end());

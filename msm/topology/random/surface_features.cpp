@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "meshes/facets.h"
+
 namespace springproof {
 namespace {
 
@@ -19,10 +21,7 @@ std::vector<Side> sides_of(const Region& region) {
   for (const auto& t : region.surface_triangles) {
     const Vec3& a = region.surface_points[t[0]];
     const Vec3 normal = (region.surface_points[t[1]] - a).cross(region.surface_points[t[2]] - a).normalized();
-    for (int c = 0; c < 3; ++c) {
-      const int i = t[c], j = t[(c + 1) % 3];
-      sides.push_back({{std::min(i, j), std::max(i, j)}, normal});
-    }
+    for (int c = 0; c < 3; ++c) sides.push_back({ascending(std::array{t[c], t[(c + 1) % 3]}), normal});
   }
   std::stable_sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.edge < b.edge; });
   return sides;

@@ -6,10 +6,10 @@
 #include <map>
 #include <numbers>
 
-#include "meshes/halved.h"
 #include "meshes/locate/outer_facets.h"
 #include "meshes/mesh_json.h"
 #include "meshes/mesher/mesher.h"
+#include "meshes/mesher/refined_meshes.h"
 #include "meshes/patches/select_patches.h"
 #include "meshes/quality.h"
 #include "meshes/regions/mark_regions.h"

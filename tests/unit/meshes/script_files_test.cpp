@@ -1,5 +1,5 @@
 // Which files a body is made from.
-#include "meshes/mesher/script_files.h"
+#include "meshes/mesher/mesh_cache.h"
 
 #include <gtest/gtest.h>
 

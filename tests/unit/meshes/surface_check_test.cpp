@@ -10,8 +10,7 @@
 #include <numbers>
 #include <random>
 
-#include "meshes/surface/stl.h"
-#include "meshes/surface/surface_cgal.h"
+#include "meshes/surface/surface_files.h"
 #include "meshes/surface/surface_repair.h"
 #include "meshes/surface/surface_topology.h"
 #include "problem/system/input_error.h"

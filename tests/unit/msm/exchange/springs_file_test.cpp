@@ -8,7 +8,7 @@
 #include <random>
 
 #include "msm/dynamics/time_step.h"
-#include "msm/exchange/npz.h"
+#include "msm/exchange/springs_document.h"
 #include "msm/laws/capabilities.h"
 #include "msm/multigrid/cell_stiffness.h"
 #include "problem/system/input_error.h"

@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "msm/topology/node_lattice.h"
+#include "msm/topology/lattices_without_cells.h"
 #include "msm/topology/random/random_network.h"
 
 namespace springproof::cracks_test {

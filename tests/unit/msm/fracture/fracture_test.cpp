@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "msm/topology/node_lattice.h"
+#include "msm/topology/lattices_without_cells.h"
 #include "msm/topology/random/random_network.h"
 #include "support/bodies.h"
 

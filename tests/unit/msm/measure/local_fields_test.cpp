@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "msm/measure/block_moduli.h"
 #include "msm/parameters/calibrate.h"
 #include "msm/statics/equilibrium.h"
 #include "msm/topology/cubic_lattice.h"

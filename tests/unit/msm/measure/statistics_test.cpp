@@ -8,6 +8,7 @@
 #include "msm/parameters/calibrate.h"
 #include "msm/topology/cubic_lattice.h"
 #include "msm/topology/random/random_network.h"
+#include "support/bulk.h"
 #include "support/network_moduli.h"
 #include "support/tolerances.h"
 
@@ -28,11 +29,11 @@ TEST(Statistics, KnowTheCubicLattice) {
   EXPECT_NEAR(all.density, 1331 / 15.625, 1e-9);
   EXPECT_NEAR(all.spacing, 2.5 / 11, 1e-12);
   // The bulk: 18 springs per node, <L> = (6 + 12 sqrt 2)/18, l = a.  Kot et al. (2014), eq. (21).
-  const NetworkStatistics bulk = bulk_statistics(network, region_of(mesh));
+  const test::Bulk bulk = test::bulk_of(network, region_of(mesh));
   EXPECT_EQ(bulk.nodes, 7 * 7 * 7);  // sqrt 2 cells away from the surface: from the second layer on
   EXPECT_NEAR(bulk.springs_per_node, 18, 1e-12);
   EXPECT_NEAR(bulk.mean_length, 0.25 * (6 + 12 * std::sqrt(2.0)) / 18, 1e-12);
-  EXPECT_NEAR(bulk.spacing, 0.25, 1e-12);
+  EXPECT_NEAR(std::cbrt(1 / bulk.density), 0.25, 1e-12);
 }
 
 // Free blocks with slip ends, k = 1, against the periodic network of the same parameters.
@@ -54,7 +55,7 @@ TEST(CorrectSurface, BringsABlockToTheModulusOfTheBulk) {
     Network network = random_network(region, p);
     const test::Moduli made = test::block_moduli(network, region.lower, region.upper);
     const double made_at_G = made.E * G / affine_shear_modulus(network) / E;
-    correct_surface(network, bulk_nodes(network, region));
+    correct_surface(network, test::bulk_of(network, region).marked);
     const test::Moduli corrected = test::block_moduli(network, region.lower, region.upper);
     const double corrected_at_G = corrected.E * G / affine_shear_modulus(network) / E;
     std::cout << "E / E_periodic: as made " << made.E / E << ", corrected " << corrected.E / E << "; calibrated "

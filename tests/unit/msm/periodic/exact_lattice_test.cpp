@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "msm/dynamics/natural_modes.h"
-#include "msm/periodic/periodic_model.h"
+#include "msm/periodic/bulk_calibration.h"
 #include "msm/statics/equilibrium.h"
 #include "support/zoo.h"
 

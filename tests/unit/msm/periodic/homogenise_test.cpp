@@ -132,13 +132,13 @@ TEST(Homogenise, RefusesWhatHasNoImagesAndWhatIsUnstable) {
 TEST(HomogenisePlane, HexagonalLatticeWithAngularSprings) {
   const double k = 40, a = 0.3;
   Network network = test::periodic_triangles(4, 4, a, k);
-  const HomogenisedPlane plain = homogenise_plane({network, {Springs{}}});
+  const Homogenised plain = homogenise({network, {Springs{}}});
   EXPECT_NEAR(plain.shear_modulus, 3 * k / (4 * std::sqrt(3.0)), 1e-10 * k);
   EXPECT_NEAR(plain.poisson_ratio, 1.0 / 3, 1e-10);
   for (double nu : {-0.95, -0.5, 0.0, 0.3, 0.6, 0.95}) {
     const double beta = angular_stiffness(k, a, nu), c = 6 * beta / (k * a * a);
     EXPECT_NEAR((1 - c) / (3 + c), nu, test::round_off);
-    const HomogenisedPlane h = homogenise_plane({network, {Springs{}, AngularSprings{beta}}});
+    const Homogenised h = homogenise({network, {Springs{}, AngularSprings{beta}}});
     EXPECT_NEAR(h.poisson_ratio, nu, 1e-10);
     EXPECT_NEAR(h.bulk_modulus, 3 * k / (2 * std::sqrt(3.0)), 1e-10 * k) << "K_2D of (13) does not depend on beta";
     EXPECT_NEAR(h.youngs_modulus, 2 * h.bulk_modulus * (1 - nu), 1e-9 * k);

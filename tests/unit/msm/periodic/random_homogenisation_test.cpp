@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "msm/measure/block_moduli.h"
+#include "msm/measure/local_fields.h"
 #include "msm/parameters/calibrate.h"
 #include "msm/periodic/homogenise.h"
 #include "msm/statics/equilibrium.h"

@@ -6,8 +6,7 @@
 #include <set>
 
 #include "msm/parameters/calibrate.h"
-#include "msm/topology/hexagonal_lattice.h"
-#include "msm/topology/node_lattice.h"
+#include "msm/topology/lattices_without_cells.h"
 #include "support/tolerances.h"
 #include "support/zoo.h"
 

@@ -9,7 +9,8 @@
 
 #include "msm/measure/statistics.h"
 #include "msm/topology/random/random_network.h"
-#include "support/bodies.h"
+#include "support/bulk.h"
+#include "support/solids.h"
 #include "support/zoo.h"
 
 namespace springproof::random_network_test {
@@ -157,7 +158,7 @@ TEST(RandomNetwork, BulkHasTheDensityAndTheSpringsAskedFor) {
         p.springs_per_node = springs;
         const Region region = block({1.8, 1.4, 1.4});
         const Network network = random_network(region, p);
-        const NetworkStatistics bulk = bulk_statistics(network, region);
+        const test::Bulk bulk = test::bulk_of(network, region);
         // About 1000 nodes at random: their number is known to some 2 % at minL = 0.8 l, less well where they are
         // freer.
         EXPECT_NEAR(bulk.density * 1e-3, 1, min_length < 0.8 ? 0.05 : 0.025) << min_length << surface;
@@ -204,7 +205,7 @@ TEST(RandomNetwork, WindowsFillTheBodyAsOneSampleDoes) {
   const Region region = block({14, 12, 12});
   const Network network = random_network(region, p);
   EXPECT_GE(smallest_distance(network), 0.8);
-  const NetworkStatistics bulk = bulk_statistics(network, region);
+  const test::Bulk bulk = test::bulk_of(network, region);
   EXPECT_NEAR(bulk.density, 1, 0.03);
   EXPECT_NEAR(bulk.springs_per_node / 15, 1, 0.04);
   p.surface_nodes = true;
@@ -263,11 +264,12 @@ TEST(RandomNetwork, TakesTetrahedraAndBalls) {
   // V/l^3 = 500, and what surface nodes add: 355 faces, 88 edges, 8 corners, each less what it replaces inside.
   EXPECT_NEAR(cut.nodes(), 778, 30);
   EXPECT_EQ(cut.X.colwise().maxCoeff(), Eigen::RowVector3d(2, 2, 1));
-  const Region round = ball({0, 0, 0}, 1);
-  const Network sphere = random_network(round, parameters(0.15));
-  EXPECT_GT(sphere.X.rowwise().norm().maxCoeff(), 0.999);
-  EXPECT_NEAR(bulk_statistics(sphere, round).density * std::pow(0.15, 3), 1, 0.06);
-  EXPECT_NEAR(sphere.volume.sum(), 4.18879, 1e-5);
+  const Region round = region_of(test::ball_of_tetrahedra(16));
+  const Network sphere = random_network(round, parameters(0.075));
+  EXPECT_GT(sphere.X.rowwise().norm().maxCoeff(), 0.499);
+  const test::Bulk bulk(sphere, [](const Vec3& x) { return 0.49 - x.norm(); });
+  EXPECT_NEAR(bulk.density * std::pow(0.075, 3), 1, 0.06);
+  EXPECT_NEAR(sphere.volume.sum(), round.volume, 1e-12);
 }
 
 TEST(RandomNetwork, StiffnessFollowsItsExponent) {

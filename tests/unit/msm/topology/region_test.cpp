@@ -3,9 +3,8 @@
 #include <random>
 
 #include "msm/topology/random/surface_features.h"
-#include "msm/topology/ray_parity.h"
 #include "msm/topology/region.h"
-#include "support/bodies.h"
+#include "support/solids.h"
 #include "support/zoo.h"
 
 namespace springproof::region_test {
@@ -62,40 +61,16 @@ TEST(Region, RaysKnowATurnedTetrahedralBody) {
   }
 }
 
-TEST(Region, BallHasItsVolumeAndItsSurface) {
-  const Region region = ball({1, 2, 3}, 2);
-  EXPECT_TRUE(region.inside({3, 2, 3}));
-  EXPECT_FALSE(region.inside({3 + 1e-9, 2, 3}));
-  double area = 0;
-  for (const auto& [a, b, c] : surface_features(region).triangles)
-    area += (b - a).cross(c - a).dot((a - Vec3(1, 2, 3)).normalized()) / 2;
-  EXPECT_NEAR(area / (16 * 3.14159265358979), 1, 1e-3);  // facets within the sphere; negative if they pointed inwards
-  EXPECT_EQ(region.surface_triangles.size(), 20u * 1024u);
-  EXPECT_THROW(ball({0, 0, 0}, 0), std::invalid_argument);
-  EXPECT_THROW(region_of(Mesh{}), std::invalid_argument);
-}
-
 TEST(Region, FeaturesAreTheCornersAndEdgesOfTheBody) {
   const SurfaceFeatures block = surface_features(region_of(block_mesh({3, 2, 1}, {6, 4, 2})));
   double length = 0;
   for (const auto& [a, b] : block.edges) length += (b - a).norm();
   EXPECT_EQ(block.corners.size(), 8u);
   EXPECT_NEAR(length, 24, 1e-12);
-  EXPECT_TRUE(surface_features(ball({0, 0, 0}, 1)).edges.empty());
-  EXPECT_TRUE(surface_features(ball({0, 0, 0}, 1)).corners.empty());
-}
-
-TEST(Region, NearSurfaceIsADistance) {
-  const Region region = region_of(block_mesh({3, 2, 2}, {1, 1, 1}));
-  std::vector<Vec3> points;
-  std::mt19937 random(3);
-  for (int n = 0; n < 3000; ++n)
-    points.emplace_back(3.0 * random() / 4294967295.0, 2.0 * random() / 4294967295.0, 2.0 * random() / 4294967295.0);
-  const std::vector<char> near = near_surface(region, points, 0.4);
-  for (std::size_t n = 0; n < points.size(); ++n) {
-    const double distance = std::min(points[n].minCoeff(), (region.upper - points[n]).minCoeff());
-    EXPECT_EQ(near[n] != 0, distance < 0.4);
-  }
+  const SurfaceFeatures round = surface_features(region_of(test::ball_of_tetrahedra(16)));
+  EXPECT_TRUE(round.edges.empty());
+  EXPECT_TRUE(round.corners.empty());
+  EXPECT_THROW(region_of(Mesh{}), std::invalid_argument);
 }
 
 TEST(Region, ClosestPointBeatsEveryPointOfTheTriangle) {

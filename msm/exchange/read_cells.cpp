@@ -1,4 +1,4 @@
-#include "msm/exchange/read_cut_cells.h"
+#include "msm/exchange/read_cells.h"
 
 #include <fmt/format.h>
 
@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "msm/exchange/springs_document.h"
 
@@ -123,8 +124,7 @@ PatchShares read_load(const JsonPlace& place, int nodes_of_network) {
   return shares;
 }
 
-}  // namespace
-
+/// Of several sizes, from version 3 on, a list.
 void read_edges(const JsonPlace& cells, double version, Network& network) {
   const JsonPlace place = cells.at("edge_m");
   if (version < springs_version_of_several_sizes || !place.is_list()) {
@@ -136,6 +136,7 @@ void read_edges(const JsonPlace& cells, double version, Network& network) {
   network.cells.edge = *std::min_element(network.cells.edges.begin(), network.cells.edges.end());
 }
 
+/// Boxes instead of cubes, from version 4 on: full ones of one size.
 void read_proportions(const JsonPlace& cells, double version, Network& network) {
   const auto place = cells.find("proportions");
   if (!place) return;
@@ -149,6 +150,7 @@ void read_proportions(const JsonPlace& cells, double version, Network& network) 
     place->refuse("is beside cut cells", "boxes that are full, of one edge_m");
 }
 
+/// The moments beside the cells' nodes, if there are any.
 void read_filled(const JsonPlace& cells, Network& network) {
   const auto fraction = cells.find("fraction");
   if (!fraction) return;
@@ -161,6 +163,114 @@ void read_filled(const JsonPlace& cells, Network& network) {
   for (std::size_t c = 0; c < count; ++c)
     network.cells.filled.push_back({alpha[c], Eigen::Map<const Vec3>(&mean[3 * c]),
                                     Eigen::Map<const Vec3>(&mixed[3 * c]), Eigen::Map<const Vec3>(&variance[3 * c])});
+}
+
+constexpr double equal = 1e-9;  // relative, of stiffnesses and volumes
+constexpr double most_points_per_node = 1000;
+
+/// A pair of corners of a cell with the spring that each cell has there.
+struct CornerPair {
+  int a, b;
+  std::optional<Spring> spring = {};  ///< of one cell
+};
+
+std::vector<CornerPair> corner_pairs() {
+  std::vector<CornerPair> pairs;
+  for (int a = 0; a < 8; ++a)
+    for (int b = a + 1; b < 8; ++b) pairs.push_back({a, b});
+  return pairs;
+}
+
+/// Number of the spring between two nodes, or -1.
+int find_spring(const Network& network, int i, int j) {
+  if (i > j) std::swap(i, j);
+  const auto before = [](const Spring& s, const std::pair<int, int>& p) { return std::pair(s.i, s.j) < p; };
+  const auto at = std::lower_bound(network.springs.begin(), network.springs.end(), std::pair(i, j), before);
+  return at != network.springs.end() && at->i == i && at->j == j ? static_cast<int>(at - network.springs.begin()) : -1;
+}
+
+bool power_of_two(int n) { return (n & (n - 1)) == 0; }
+
+/// The springs of one cell; nothing if the network's are not theirs superposed.
+std::optional<std::vector<Spring>> springs_of_cell(const Network& network) {
+  std::vector<CornerPair> pairs = corner_pairs();
+  std::vector<int> sharing(network.springs.size(), 0);  // cells that a spring belongs to
+  for (const Hexahedron& cell : network.cells.corners)
+    for (const CornerPair& p : pairs)
+      if (const int s = find_spring(network, cell[p.a], cell[p.b]); s >= 0) ++sharing[s];
+  if (std::count(sharing.begin(), sharing.end(), 0) > 0) return {};
+  for (const Hexahedron& cell : network.cells.corners)
+    for (CornerPair& p : pairs) {
+      const int s = find_spring(network, cell[p.a], cell[p.b]);
+      // A quotient by 1, 2 or 4 is exact.
+      if (s < 0 || (p.spring && !power_of_two(sharing[s]))) continue;
+      if (const Spring& whole = network.springs[s]; !p.spring || power_of_two(sharing[s]))
+        p.spring = {p.a, p.b, whole.stiffness / sharing[s], whole.rest_length};
+    }
+  for (const Hexahedron& cell : network.cells.corners)
+    for (const CornerPair& p : pairs) {
+      const int s = find_spring(network, cell[p.a], cell[p.b]);
+      if ((s >= 0) != p.spring.has_value()) return {};
+      if (s < 0) continue;
+      const Spring& whole = network.springs[s];
+      if (!(std::abs(whole.stiffness - sharing[s] * p.spring->stiffness) <= equal * whole.stiffness)) return {};
+      if (!(std::abs(whole.rest_length - p.spring->rest_length) <= equal * whole.rest_length)) return {};
+    }
+  std::vector<Spring> springs;
+  for (const CornerPair& p : pairs)
+    if (p.spring) springs.push_back(*p.spring);
+  return springs;
+}
+
+/// Sets CellSet::grid and springs of a network with cells if its springs are those of its equal cells superposed, and
+/// its volume shares the cells': then it has the kernels and solvers of lattices.  Else it has neither.
+void recognise_lattice(Network& network) {
+  network.cells.grid.reset();
+  network.cells.springs.clear();
+  Mesh mesh;
+  mesh.nodes = network.X;
+  mesh.hexahedra = network.cells.corners;
+  const std::optional<Grid> grid = detect_grid(mesh);
+  const Vec3 edges = network.cells.edge * network.cells.proportions;
+  if (!grid || ((grid->spacing - edges).array().abs() > 1e-6 * edges.array()).any()) return;
+  double points = 1;  // kernels of lattices have a place for each
+  for (const int n : grid->cells) points *= n + 1;
+  if (points > most_points_per_node * network.nodes()) return;
+  const Eigen::VectorXd volume = nodal_volumes(mesh);
+  if (((network.volume - volume).array().abs() > equal * volume.array()).any()) return;
+  auto springs = springs_of_cell(network);
+  if (!springs) return;
+  network.cells.grid = grid;
+  network.cells.springs = std::move(*springs);
+}
+
+}  // namespace
+
+void read_cells(const JsonPlace& document, double version, Network& network) {
+  const int last = network.nodes() - 1;
+  if (const auto triangles = document.find("triangles")) network.triangles = rows<3>(*triangles, last, "triangle");
+  const auto place = document.find("cells");
+  if (!place) return;
+  CellSet& cells = network.cells;
+  place->require_known({"nodes", "edge_m", "proportions", "fraction", "mean", "mixed", "variance", "material"});
+  cells.corners = rows<8>(place->at("nodes"), last, "cell");
+  read_edges(*place, version, network);
+  read_proportions(*place, version, network);
+  for (std::size_t c = 0; c < cells.size(); ++c)
+    for (int n = 0; n < 8; ++n) {
+      const Vec3 corner(hexahedron_corners[n][0], hexahedron_corners[n][1], hexahedron_corners[n][2]);
+      const Vec3 at = (network.X.row(cells.corners[c][n]) - network.X.row(cells.corners[c][0])).transpose();
+      const Vec3 expected = cells.edge_of(c) * cells.proportions.cwiseProduct(corner);
+      if ((at - expected).cwiseAbs().maxCoeff() > 1e-6 * cells.edge * cells.proportions.minCoeff())
+        place->at("nodes").refuse(fmt::format("cell {} is no cube of edge_m in the order of corners", c),
+                                  "axis-aligned cubes, or boxes of proportions, corners (0,0,0) (1,0,0) (1,1,0) "
+                                  "(0,1,0) (0,0,1) (1,0,1) (1,1,1) "
+                                  "(0,1,1)");
+    }
+  read_filled(*place, network);
+  if (cells.kind() == CellKind::sizes && !cells.cut())
+    place->at("edge_m").refuse("is a list, of whole cells", "one edge; or with fraction, mean, mixed and variance");
+  if (!cells.empty() && !cells.cut()) recognise_lattice(network);
 }
 
 void read_carried(const JsonPlace& document, Network& network) {

@@ -1,4 +1,4 @@
-// STL files, ASCII and binary.
+// Files of surfaces: STL, ASCII and binary, OBJ and PLY.
 #pragma once
 
 #include <filesystem>
@@ -19,5 +19,15 @@ Surface read_stl(const std::filesystem::path& file);
 
 /// As read_stl, from the file's bytes; `file` is used for messages.
 Surface parse_stl(std::string_view bytes, const std::filesystem::path& file);
+
+/// The facets of an OBJ file (Wavefront), polygons cut into triangles at their first corner; its groups (`g`, `o`) are
+/// the parts of the surface if there are several.  Texture, normals, materials, lines and curves are left aside.
+/// @throws InputError with the file and the line: no file, no facets, a coordinate that is no finite number, a facet of
+///         fewer than three corners, or of a vertex that is not there.
+Surface read_obj(const std::filesystem::path& file);
+
+/// The facets of a PLY file, in words or binary, polygons cut into triangles at their first corner.
+/// @throws InputError with the file: no file, none of PLY, no facets, a facet of fewer than three corners.
+Surface read_ply(const std::filesystem::path& file);
 
 }  // namespace springproof
