@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "comparisons/judge/swings.h"
-#include "msm/laws/filled_volume.h"
+#include "msm/cells/filled_volume.h"
 
 namespace springproof {
 

@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "comparisons/reference/reference_grids.h"
+#include "msm/cells/filled_volume.h"
 #include "msm/embedding/cut_lattice.h"
 #include "msm/laws/anchors.h"
-#include "msm/laws/filled_volume.h"
 
 namespace springproof {
 namespace {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <iterator>
 
+#include "meshes/mesher/mesh_cache.h"
 #include "meshes/mesher/mesher.h"
-#include "meshes/mesher/script_files.h"
 #include "msm/dynamics/time_step.h"
 #include "msm/embedding/boundary.h"
 #include "msm/exchange/anchored_springs.h"

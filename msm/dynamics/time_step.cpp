@@ -8,10 +8,10 @@
 #include <stdexcept>
 
 #include "msm/algebra/dense.h"
+#include "msm/cells/stiffness_of_cells.h"
 #include "msm/dynamics/terms/mass_average.h"
 #include "msm/laws/capabilities.h"
 #include "msm/laws/nodal_gradients.h"
-#include "msm/laws/stiffness_of_cells.h"
 #include "msm/multigrid/cell_stiffness.h"
 
 namespace springproof {

@@ -1,6 +1,6 @@
 #include "msm/laws/anchors.h"
 
-#include "msm/laws/filled_volume.h"
+#include "msm/cells/filled_volume.h"
 
 namespace springproof {
 namespace {

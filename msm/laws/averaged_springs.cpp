@@ -6,7 +6,7 @@
 #include <map>
 #include <utility>
 
-#include "msm/laws/cell_corners.h"
+#include "msm/cells/cell_corners.h"
 #include "msm/laws/hourglass_correction.h"
 
 namespace springproof {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "msm/algebra/block_matrix.h"
-#include "msm/laws/filled_volume.h"
+#include "msm/cells/filled_volume.h"
 #include "msm/laws/law_traits.h"
 #include "msm/laws/strain_energy.h"
 #include "msm/topology/network.h"

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "msm/laws/cell_corners.h"
+#include "msm/cells/cell_corners.h"
 
 namespace springproof {
 namespace {

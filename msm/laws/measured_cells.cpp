@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "msm/laws/cell_corners.h"
+#include "msm/cells/cell_corners.h"
 
 namespace springproof {
 namespace {

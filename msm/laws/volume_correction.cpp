@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "msm/laws/filled_volume.h"
+#include "msm/cells/filled_volume.h"
 
 namespace springproof {
 

@@ -91,10 +91,10 @@ struct ModelParameters {
   bool paper_e_form = false;  ///< springs from E by Golec et al. (2019), (5.12) right, as in its tables
   VolumeEnergy volume_energy = VolumeEnergy::bounded;  ///< of the volume correction
   Dispersion dispersion = Dispersion::symmetric;       ///< form of momentum dispersion
-  std::optional<bool> exact_volumes;   ///< dispersion weights: exact nodal volumes (msm/laws/dispersion_weights.h) or w
-                                       ///< = k L; empty: exact where q >= 0
-  bool homogenised = true;             ///< random networks: calibrated by homogenisation in bulk; false: by eq. (20)
-  RandomParameters random{};           ///< of random networks; its spacing follows from the mesh
+  std::optional<bool> exact_volumes;  ///< dispersion weights: exact nodal volumes (msm/cells/dispersion_weights.h) or w
+                                      ///< = k L; empty: exact where q >= 0
+  bool homogenised = true;            ///< random networks: calibrated by homogenisation in bulk; false: by eq. (20)
+  RandomParameters random{};          ///< of random networks; its spacing follows from the mesh
   std::optional<double> node_density;  ///< of random networks [1/m^3]; empty: one node per cube
   std::optional<double> grip;          ///< depth in node spacings to which supports hold nodes that are not the mesh's
   double turned = 0;                   ///< of node-centred lattices: angle about z [rad] between lattice and axes

@@ -14,7 +14,7 @@
 namespace springproof {
 namespace {
 
-constexpr double inner_tolerance = 1e-6;  // of the companion's solves; GMRES removes their error after a restart
+constexpr double companion_tolerance = 1e-6;  // of the companion's solves; GMRES removes their error after a restart
 
 using Strains = std::vector<Eigen::Matrix3d>;
 
@@ -102,7 +102,7 @@ KrylovResult relax(const PeriodicStiffness& K, const PeriodicStiffness* companio
   int inner = 0;
   const Operator precondition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
     z = Eigen::VectorXd::Zero(r.size());
-    inner += solve(*companion, inner_tolerance, r, z).iterations;
+    inner += solve(*companion, companion_tolerance, r, z).iterations;
   };
   KrylovResult result = gmres(K.operation(), precondition, b, options.tolerance, 200, 100, w);
   result.iterations += inner;

@@ -1,7 +1,7 @@
 // Force laws of a row of the model table, for bodies and for periodic cells.
 #pragma once
 
-#include "msm/laws/dispersion_weights.h"
+#include "msm/cells/dispersion_weights.h"
 #include "msm/periodic/bulk_calibration.h"
 
 namespace springproof {

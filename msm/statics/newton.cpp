@@ -20,7 +20,7 @@
 namespace springproof {
 namespace {
 
-constexpr int most_iterations = 30;
+constexpr int most_newton_steps = 30;
 constexpr double settled = 1e-3;  // relative change of the stiffness
 
 /// Per axis sum |u_j - u_i|^2 over sum |u_i|^2 + |u_j|^2 of the edges of all cells.
@@ -50,7 +50,7 @@ SoftestMotion softest_motion(const MassSpringModel& model, const StiffnessSolver
   fill_with_noise(u);
   clear_fixed(fixed, u);
   double stiffness = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < most_iterations; ++i) {
+  for (int i = 0; i < most_newton_steps; ++i) {
     rest.multiply(u, Ru);
     Eigen::VectorXd next;
     if (!K.solve(Ru / Ru.norm(), 1e-4, 4000, next).converged) break;

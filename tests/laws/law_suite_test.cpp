@@ -4,9 +4,9 @@
 #include <set>
 
 #include "meshes/volume.h"
+#include "msm/cells/dispersion_weights.h"
 #include "msm/exchange/springs_file.h"
 #include "msm/laws/capabilities.h"
-#include "msm/laws/dispersion_weights.h"
 #include "msm/topology/cubic_lattice.h"
 #include "support/tolerances.h"
 #include "support/zoo.h"

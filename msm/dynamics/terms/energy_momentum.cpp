@@ -5,9 +5,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "msm/cells/cell_corners.h"
 #include "msm/laws/anchors.h"
 #include "msm/laws/capabilities.h"
-#include "msm/laws/cell_corners.h"
 #include "msm/laws/nodal_gradients.h"
 
 namespace springproof {

@@ -4,9 +4,9 @@
 #include <Eigen/SparseCore>
 #include <vector>
 
+#include "msm/cells/stiffness_of_cells.h"
 #include "msm/kernels/kernels.h"
 #include "msm/laws/averaged_springs.h"
-#include "msm/laws/stiffness_of_cells.h"
 
 namespace springproof {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "meshes/volume.h"
-#include "msm/laws/dispersion_weights.h"
+#include "msm/cells/dispersion_weights.h"
 #include "msm/measure/statistics.h"
 #include "msm/statics/equilibrium.h"
 #include "support/tolerances.h"

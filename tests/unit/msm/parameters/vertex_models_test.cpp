@@ -10,8 +10,8 @@
 
 #include "meshes/mesher/mesher.h"
 #include "meshes/volume.h"
+#include "msm/cells/dispersion_weights.h"
 #include "msm/embedding/surface_shares.h"
-#include "msm/laws/dispersion_weights.h"
 #include "msm/statics/equilibrium.h"
 #include "support/zoo.h"
 

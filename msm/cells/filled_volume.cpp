@@ -1,4 +1,4 @@
-#include "msm/laws/filled_volume.h"
+#include "msm/cells/filled_volume.h"
 
 #include <Eigen/Dense>
 #include <cmath>

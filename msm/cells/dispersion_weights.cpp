@@ -1,4 +1,4 @@
-#include "msm/laws/dispersion_weights.h"
+#include "msm/cells/dispersion_weights.h"
 
 #include <fmt/format.h>
 

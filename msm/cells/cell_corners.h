@@ -1,7 +1,7 @@
 // Vectors at the corners of a cell, taken from those of all nodes and given back to them.
 #pragma once
 
-#include "msm/laws/filled_volume.h"
+#include "msm/cells/filled_volume.h"
 
 namespace springproof {
 
