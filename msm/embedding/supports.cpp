@@ -15,7 +15,7 @@ namespace springproof {
 namespace {
 
 constexpr double least_spread = 1e-6;    // of an edge: below it the quotient of moments is round-off
-constexpr double least = 1e-3;           // of E: what holds the node of an anchor across where it is free
+constexpr double least_of_E = 1e-3;      // of E: what holds the node of an anchor across where it is free
 constexpr double confined_above = 0.45;  // Poisson's ratio from which bonds are stiffer across an interface
 
 /// The part of a patch in a cell as a plate: moments of its area, of the first and second order.
@@ -166,7 +166,7 @@ std::vector<Anchor> anchors_of_patch(const CutBody& body, const std::string& pat
       anchors.push_back({part.cell.corners, gain.weights(part, q), -1, k / bonds_of_part * E});
     const Vec3 n = mean_normal(part);
     anchors.push_back({part.cell.corners, part.mean(), -1,
-                       k * ((modulus_across(material) - material.youngs_modulus) * n * n.transpose() + least * E)});
+                       k * ((modulus_across(material) - material.youngs_modulus) * n * n.transpose() + least_of_E * E)});
   }
   return anchors;
 }

@@ -44,7 +44,9 @@ TEST(SurfaceShares, ObeyGaussAndBelongToTheirFaces) {
   EXPECT_NEAR(end.area.sum(), 1, 1e-12);
   EXPECT_LE((X.transpose() * end.area - Vec3(4, 0.5, 0.5)).norm(), 1e-12);
   for (Eigen::Index n = 0; n < X.rows(); ++n)
-    if (X(n, 0) < 4) EXPECT_EQ(end.area[n], 0) << "x = " << X(n, 0);
+    if (X(n, 0) < 4) {
+      EXPECT_EQ(end.area[n], 0) << "x = " << X(n, 0);
+    }
 }
 
 // Without what the edges give to the inside they are 9 % too large (the trapezoidal rule of five intervals: 8 %).
@@ -111,7 +113,9 @@ TEST(PatchFit, HoldsAffineStrainsAtEveryNodeButTheCorners) {
     const NodalVectors left = force + A * stress;
     const double of_node = stress.norm() * std::pow(4.0 / network.nodes(), 2.0 / 3);
     for (int n = 0; n < network.nodes(); ++n)
-      if (faces_at(network.X, n) < 3) EXPECT_LE(left.row(n).norm(), 0.03 * of_node) << network.X.row(n);
+      if (faces_at(network.X, n) < 3) {
+        EXPECT_LE(left.row(n).norm(), 0.03 * of_node) << network.X.row(n);
+      }
     mean += left.squaredNorm() / network.nodes() / (of_node * of_node) / 3;
   }
   EXPECT_LE(std::sqrt(mean), 3e-3);
