@@ -21,8 +21,8 @@ const std::vector<std::string>& body_file_endings();
 struct Body {
   std::string geo;           ///< file name: one of meshes/geo/, or a path relative to the case file
   Vec3 size = Vec3::Zero();  ///< [m], parameters of a .geo; for voxels the bounding box of the body, once it is known
-  std::vector<Cells> cells = {};  ///< resolutions of the springs, one or more; for voxels of the bounding box
-  SourceLocation where = {};      ///< of the key `geo`
+  std::vector<Cells> cells = {};         ///< resolutions of the springs, one or more; for voxels of the bounding box
+  SourceLocation where = {};             ///< of the key `geo`
   std::vector<double> voxel_edges = {};  ///< [m]; empty: no voxels, or their counts are given
   std::vector<int> voxel_counts = {};    ///< approximate numbers of cubes; empty: no voxels, or their edges are given
   bool cut = true;                       ///< voxels: models that can take cut cells instead of whole cubes
