@@ -120,11 +120,11 @@ int main(int count, char** arguments) try {
       std::vector<struct sp_averaged> of = {averaged_of(law)};
       for (const json& region : law.value("regions", json::array())) of.push_back(averaged_of(region));
       const struct sp_averaged& springs = of[0];
-      const std::size_t of_cells = cells.size() / 8;
+      const std::size_t number = cells.size() / 8;
       W += !material.empty()
-               ? sp_averaged_materials(of_cells, cells.data(), edges[0], parts, of.data(), material.data(), x.data(), f)
-           : edge.is_array() ? sp_averaged_sizes(of_cells, cells.data(), edges.data(), parts, springs, x.data(), f)
-                             : sp_averaged_cut(of_cells, cells.data(), edges[0], parts, springs, x.data(), f);
+               ? sp_averaged_materials(number, cells.data(), edges[0], parts, of.data(), material.data(), x.data(), f)
+           : edge.is_array() ? sp_averaged_sizes(number, cells.data(), edges.data(), parts, springs, x.data(), f)
+                             : sp_averaged_cut(number, cells.data(), edges[0], parts, springs, x.data(), f);
     }
     W += sp_bonds(bonded.size() / 16, bonded.data(), bond_weights.data(), bond_stiffness.data(),
                   edges.empty() ? 1 : edges[0], x.data(), f);
