@@ -165,8 +165,9 @@ std::vector<Anchor> anchors_of_patch(const CutBody& body, const std::string& pat
     for (std::size_t q = 0; q < bonds_of_part; ++q)
       anchors.push_back({part.cell.corners, gain.weights(part, q), -1, k / bonds_of_part * E});
     const Vec3 n = mean_normal(part);
-    anchors.push_back({part.cell.corners, part.mean(), -1,
-                       k * ((modulus_across(material) - material.youngs_modulus) * n * n.transpose() + least_of_E * E)});
+    anchors.push_back(
+        {part.cell.corners, part.mean(), -1,
+         k * ((modulus_across(material) - material.youngs_modulus) * n * n.transpose() + least_of_E * E)});
   }
   return anchors;
 }
