@@ -20,6 +20,7 @@ set(tested_ratios  # a regular expression of cases, their ratios
     "motion/(released_bar|struck_bar.*)" 0.3
     "bodies/(rabbit|l_bracket)" 0.45
     "bodies/rabbit_(5000|measured)" -0.5,0.499
+    "bodies/rabbit_networks" 0
     "bodies/bar_networks" 0,0.45
     "bodies/glued_to_walls" 0.45,0.499
     "bodies/pressed_between_walls" 0.3,0.499
