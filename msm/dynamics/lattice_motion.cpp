@@ -34,17 +34,6 @@ bool LatticeMotion::suits_gpu(const MassSpringModel& model, const MotionOptions&
          !options.relaxation.acts() && options.mass_consistency == 0;
 }
 
-void LatticeMotion::set_state(const NodalVectors& x, const NodalVectors& v) {
-  Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor> values(x.rows(), 6);
-  values << x - network_.X, v;
-  write(0, network_.nodes(), values.data());
-}
-
-BoundaryConditions LatticeMotion::no_conditions() const {
-  const NodalVectors zero = NodalVectors::Zero(network_.nodes(), 3);
-  return {std::vector<char>(zero.size(), 0), {}, zero, zero};
-}
-
 MotionOptions on_chosen_device(const MassSpringModel& model, MotionOptions options) {
   if (gpu::wants_gpu() && LatticeMotion::suits_gpu(model, options)) options.device = Device::gpu;
   return options;

@@ -27,7 +27,11 @@ class LatticeMotion : public Motion {
     damping_ = damping;
   }
 
-  void set_state(const NodalVectors& x, const NodalVectors& v) override;
+  void set_state(const NodalVectors& x, const NodalVectors& v) override {
+    Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor> values(x.rows(), 6);
+    values << x - network_.X, v;
+    write(0, network_.nodes(), values.data());
+  }
   /// Displacement [m], then velocity [m/s] of nodes begin <= n < end, six values per node.
   virtual void read(int begin, int end, double* values) const = 0;
   virtual void write(int begin, int end, const double* values) = 0;
@@ -43,7 +47,10 @@ class LatticeMotion : public Motion {
         density_(density),
         time_step_(options.time_step.value()),
         damping_(options.damping) {}
-  BoundaryConditions no_conditions() const;
+  BoundaryConditions no_conditions() const {
+    const NodalVectors zero = NodalVectors::Zero(network_.nodes(), 3);
+    return {std::vector<char>(zero.size(), 0), {}, zero, zero};
+  }
 
   const Network& network_;
   double edge_, density_, time_step_, damping_;
